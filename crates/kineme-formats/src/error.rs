@@ -1,0 +1,59 @@
+//! Errors of readers and writers: which file, where in it, what was found, what would be right.
+
+use std::fmt;
+
+/// Where in a file something is wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// A line, counted from 1.
+    Line(usize),
+    /// A byte, counted from 0.
+    Byte(usize),
+    /// The file as a whole.
+    File,
+}
+
+/// A file that cannot be read or written, told completely.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub struct FormatError {
+    /// The file as the user named it, with the path inside an archive.
+    pub file: String,
+    /// Where in it.
+    pub place: Place,
+    /// What was found there.
+    pub found: String,
+    /// What would have been right.
+    pub expected: String,
+}
+
+/// `Result` with a [`FormatError`].
+pub type Result<T> = std::result::Result<T, FormatError>;
+
+impl FormatError {
+    /// An error at a place of a file.
+    pub fn new(
+        file: impl Into<String>,
+        place: Place,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Self {
+        Self {
+            file: file.into(),
+            place,
+            found: found.into(),
+            expected: expected.into(),
+        }
+    }
+}
+
+impl fmt::Display for FormatError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file)?;
+        match self.place {
+            Place::Line(line) => write!(f, ":{line}")?,
+            Place::Byte(byte) => write!(f, " at byte {byte}")?,
+            Place::File => {}
+        }
+        write!(f, ": found {}, expected {}", self.found, self.expected)
+    }
+}
