@@ -3,8 +3,9 @@
 pub mod error;
 pub mod math;
 pub mod motion;
+pub mod retargeting;
 pub mod skeleton;
 
 pub use error::{Error, Result};
-pub use motion::{Format, Observed, Placement, RecordedJoint, Recording, Source};
-pub use skeleton::Role;
+pub use motion::{Format, Motion, Observed, Placement, RecordedJoint, Recording, Source, Track};
+pub use skeleton::{Role, Root, Skeleton, adonis, ares, body};

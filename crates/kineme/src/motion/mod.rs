@@ -1,5 +1,9 @@
-//! Floor 1: recordings as observed, motions of a body, Cartesian tracks, segments.
+//! Floor 1: recordings as observed, motions of a body, Cartesian tracks.
 
+mod body_motion;
 mod recording;
+mod track;
 
+pub use body_motion::Motion;
 pub use recording::{Format, Observed, Placement, RecordedJoint, Recording, Source};
+pub use track::Track;

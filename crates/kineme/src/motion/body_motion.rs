@@ -1,0 +1,204 @@
+//! [`Motion`]: a movement of a body, in its joint coordinates.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use super::track::Track;
+use crate::error::{Error, Result};
+use crate::skeleton::{Frame, Root, Skeleton};
+
+/// A movement of one body at one rate: poses, and beside them where the body stands. Finite, at least one pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    name: String,
+    skeleton: Arc<Skeleton>,
+    rate_hz: f64,
+    poses: Vec<f64>,
+    roots: Vec<Root>,
+}
+
+impl Motion {
+    /// A motion of `skeleton` from its poses, frame-major (`frames x dof`), and one root a frame.
+    ///
+    /// # Errors
+    /// Without frames, when lengths disagree, when a number is not finite or the rate not positive.
+    pub fn new(
+        name: impl Into<String>,
+        skeleton: Arc<Skeleton>,
+        rate_hz: f64,
+        poses: Vec<f64>,
+        roots: Vec<Root>,
+    ) -> Result<Self> {
+        let name = name.into();
+        if roots.is_empty() || poses.len() != roots.len() * skeleton.dof() {
+            return Err(Error::invalid(format!(
+                "`{name}`: {} coordinates and {} roots are no motion of {} coordinates a pose",
+                poses.len(),
+                roots.len(),
+                skeleton.dof()
+            )));
+        }
+        if !(rate_hz.is_finite() && rate_hz > 0.0) {
+            return Err(Error::invalid(format!(
+                "`{name}`: a motion needs a positive rate, found {rate_hz} Hz"
+            )));
+        }
+        let finite = poses.iter().all(|v| v.is_finite())
+            && roots
+                .iter()
+                .all(|r| r.yaw.is_finite() && r.position.iter().all(|v| v.is_finite()));
+        if !finite {
+            return Err(Error::invalid(format!(
+                "`{name}`: a motion needs finite numbers"
+            )));
+        }
+        Ok(Self {
+            name,
+            skeleton,
+            rate_hz,
+            poses,
+            roots,
+        })
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The body that moves.
+    pub fn skeleton(&self) -> &Arc<Skeleton> {
+        &self.skeleton
+    }
+
+    /// Frames a second.
+    pub fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    /// The number of frames, at least one.
+    pub fn frames(&self) -> usize {
+        self.roots.len()
+    }
+
+    /// Seconds from the first to the end of the last frame.
+    pub fn duration_secs(&self) -> f64 {
+        self.frames() as f64 / self.rate_hz
+    }
+
+    /// The pose at a frame.
+    pub fn pose(&self, frame: usize) -> &[f64] {
+        let dof = self.skeleton.dof();
+        &self.poses[frame * dof..(frame + 1) * dof]
+    }
+
+    /// All poses, frame-major.
+    pub fn poses(&self) -> &[f64] {
+        &self.poses
+    }
+
+    /// Where the body stands at a frame.
+    pub fn root(&self, frame: usize) -> &Root {
+        &self.roots[frame]
+    }
+
+    /// Where the body stands, frame by frame.
+    pub fn roots(&self) -> &[Root] {
+        &self.roots
+    }
+
+    /// World frames of all joints at a frame.
+    pub fn frames_at(&self, frame: usize) -> Vec<Frame> {
+        self.skeleton.frames(self.pose(frame), self.root(frame))
+    }
+
+    /// The part of the motion in these frames; at least one.
+    ///
+    /// # Errors
+    /// When the range is empty or passes the end.
+    pub fn slice(&self, range: std::ops::Range<usize>) -> Result<Self> {
+        if range.is_empty() || range.end > self.frames() {
+            return Err(Error::invalid(format!(
+                "`{}`: frames {}..{} of {}",
+                self.name,
+                range.start,
+                range.end,
+                self.frames()
+            )));
+        }
+        let dof = self.skeleton.dof();
+        Ok(Self {
+            name: self.name.clone(),
+            skeleton: Arc::clone(&self.skeleton),
+            rate_hz: self.rate_hz,
+            poses: self.poses[range.start * dof..range.end * dof].to_vec(),
+            roots: self.roots[range].to_vec(),
+        })
+    }
+
+    /// The motion at another rate, coordinates interpolated linearly; the first frame stays at time zero.
+    ///
+    /// # Errors
+    /// When the rate is not positive.
+    pub fn resampled(&self, rate_hz: f64) -> Result<Self> {
+        if !(rate_hz.is_finite() && rate_hz > 0.0) {
+            return Err(Error::invalid(format!(
+                "a rate must be positive, found {rate_hz} Hz"
+            )));
+        }
+        let last = self.frames() - 1;
+        let count = ((last as f64 / self.rate_hz) * rate_hz + 1e-9).floor() as usize + 1;
+        let dof = self.skeleton.dof();
+        let mut poses = Vec::with_capacity(count * dof);
+        let mut roots = Vec::with_capacity(count);
+        for i in 0..count {
+            let place = i as f64 / rate_hz * self.rate_hz;
+            let a = (place.floor() as usize).min(last);
+            let b = (a + 1).min(last);
+            let s = place - a as f64;
+            let blend = |x: f64, y: f64| x + (y - x) * s;
+            poses.extend(
+                self.pose(a)
+                    .iter()
+                    .zip(self.pose(b))
+                    .map(|(x, y)| blend(*x, *y)),
+            );
+            let (ra, rb) = (self.root(a), self.root(b));
+            roots.push(Root {
+                position: ra.position + (rb.position - ra.position) * s,
+                yaw: blend(ra.yaw, rb.yaw),
+            });
+        }
+        Self::new(
+            self.name.clone(),
+            Arc::clone(&self.skeleton),
+            rate_hz,
+            poses,
+            roots,
+        )
+    }
+
+    /// World paths of the effectors.
+    pub fn effectors(&self) -> Track {
+        let names = self
+            .skeleton
+            .effectors()
+            .iter()
+            .map(|e| e.name.clone())
+            .collect();
+        let points: Vec<Vector3<f64>> = (0..self.frames())
+            .flat_map(|f| self.skeleton.effector_positions(self.pose(f), self.root(f)))
+            .collect();
+        Track::new(self.rate_hz, names, points)
+    }
+
+    /// World paths of all joints.
+    pub fn joints(&self) -> Track {
+        let names = self.skeleton.joints().iter().map(|j| j.name.clone());
+        let points = (0..self.frames())
+            .flat_map(|f| self.frames_at(f).into_iter().map(|j| j.position))
+            .collect();
+        Track::new(self.rate_hz, names.collect(), points)
+    }
+}

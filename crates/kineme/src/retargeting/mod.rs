@@ -1,0 +1,16 @@
+//! Floor 2: motion of any skeleton, or bare positions, expressed in the joints of a body.
+//!
+//! Retargeting is geometric, by anatomical frames: it needs no agreement of rest poses and works from bare positions
+//! as from rotations. Limb lengths are normalised away: only directions and orientations pass.
+
+mod anatomy;
+mod fit;
+mod guess;
+mod landmarks;
+mod limb;
+mod profile;
+
+pub use anatomy::Anatomy;
+pub use fit::{Retargeted, retarget, transfer};
+pub use landmarks::Landmarks;
+pub use profile::{Profile, REQUIRED, RoleMap};
