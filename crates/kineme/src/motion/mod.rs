@@ -1,9 +1,11 @@
 //! Floor 1: recordings as observed, motions of a body, Cartesian tracks.
 
+mod activity;
 mod body_motion;
 mod recording;
 mod track;
 
+pub use activity::{CENTROID_DIMS, STACKED_DIMS};
 pub use body_motion::Motion;
 pub use recording::{Format, Observed, Placement, RecordedJoint, Recording, Source};
 pub use track::Track;

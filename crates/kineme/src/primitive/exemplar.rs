@@ -1,0 +1,25 @@
+//! [`Exemplar`]: one recorded or authored trajectory of a primitive.
+
+use crate::motion::Motion;
+
+/// Where an exemplar comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Provenance {
+    /// The recording's name: `set.zip/inner/walk.bvh`.
+    pub motion: String,
+    /// Start in the recording, seconds.
+    pub start_secs: f64,
+    /// End in the recording, seconds.
+    pub end_secs: f64,
+    /// BLAKE3 of the source's bytes, hexadecimal, where it was a file.
+    pub blake3: Option<String>,
+}
+
+/// One trajectory that defines a movement: joint coordinates over time, with where they come from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Exemplar {
+    /// The movement, from its first to its last frame.
+    pub motion: Motion,
+    /// Its source.
+    pub provenance: Provenance,
+}

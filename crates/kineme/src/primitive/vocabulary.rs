@@ -1,0 +1,161 @@
+//! [`Vocabulary`]: the primitives of one body, and what is known of how they follow one another.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use super::exemplar::Exemplar;
+use crate::error::{Error, Result};
+use crate::skeleton::Skeleton;
+
+/// A class of structurally identical yet stylistically varied movements (paper, section III), given by exemplars.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Primitive {
+    /// Its name, unique in the vocabulary.
+    pub name: String,
+    /// Its exemplars, at least one, the most central first.
+    pub exemplars: Vec<Exemplar>,
+    /// How many segments its group had; exemplars may be fewer.
+    pub members: usize,
+    /// Mean silhouette of the group in [-1, 1]; low values flag unintended groups. `None` when it is the only group.
+    pub coherence: Option<f64>,
+}
+
+/// Primitives that belong to one behaviour: the second level of the derivation.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Behavior {
+    /// Its name; the primitive's own where it has just one.
+    pub name: String,
+    /// Names of its primitives.
+    pub primitives: Vec<String>,
+}
+
+/// How often one primitive followed another inside true recordings.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Transitions {
+    /// Row-major `n x n`: `counts[from * n + to]`.
+    pub counts: Vec<u32>,
+    /// The number of primitives.
+    pub n: usize,
+}
+
+impl Transitions {
+    /// No successions among `n` primitives.
+    pub fn none(n: usize) -> Self {
+        Self {
+            counts: vec![0; n * n],
+            n,
+        }
+    }
+
+    /// How often `to` followed `from`.
+    pub fn count(&self, from: usize, to: usize) -> u32 {
+        self.counts[from * self.n + to]
+    }
+
+    /// The probability that `to` follows `from`, Laplace-smoothed with one count for every successor.
+    pub fn probability(&self, from: usize, to: usize) -> f64 {
+        let row = &self.counts[from * self.n..(from + 1) * self.n];
+        let all: f64 = row.iter().map(|&c| f64::from(c)).sum();
+        (f64::from(row[to]) + 1.0) / (all + self.n as f64)
+    }
+}
+
+/// Primitives of one body: built once, checked once, then only lent.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Vocabulary {
+    body: Arc<Skeleton>,
+    primitives: Vec<Primitive>,
+    behaviors: Vec<Behavior>,
+    transitions: Transitions,
+}
+
+impl Vocabulary {
+    /// A vocabulary of these primitives.
+    ///
+    /// # Errors
+    /// When names repeat or are empty, a primitive has no exemplar or one of another body, a behaviour names no
+    /// primitive of the vocabulary, or the transitions are of another number of primitives.
+    pub fn new(
+        body: Arc<Skeleton>,
+        primitives: Vec<Primitive>,
+        behaviors: Vec<Behavior>,
+        transitions: Transitions,
+    ) -> Result<Self> {
+        let mut names = BTreeSet::new();
+        for p in &primitives {
+            if p.name.is_empty() || !names.insert(p.name.as_str()) {
+                return Err(Error::invalid(format!(
+                    "primitives need distinct names, found `{}` twice or empty",
+                    p.name
+                )));
+            }
+            if p.exemplars.is_empty() {
+                return Err(Error::invalid(format!("primitive `{}` has no exemplar", p.name)));
+            }
+            let foreign = |e: &&Exemplar| **e.motion.skeleton() != *body;
+            if let Some(e) = p.exemplars.iter().find(foreign) {
+                return Err(Error::invalid(format!(
+                    "an exemplar of `{}` is of the body `{}`, not of `{}`",
+                    p.name,
+                    e.motion.skeleton().name(),
+                    body.name()
+                )));
+            }
+        }
+        for name in behaviors.iter().flat_map(|b| &b.primitives) {
+            if !names.contains(name.as_str()) {
+                return Err(Error::unknown_name("primitive", name, names.iter().copied()));
+            }
+        }
+        let n = primitives.len();
+        if transitions.n != n || transitions.counts.len() != n * n {
+            return Err(Error::invalid(format!(
+                "transitions of {} primitives for a vocabulary of {n}",
+                transitions.n
+            )));
+        }
+        Ok(Self {
+            body,
+            primitives,
+            behaviors,
+            transitions,
+        })
+    }
+
+    /// The body that all exemplars move.
+    pub fn body(&self) -> &Arc<Skeleton> {
+        &self.body
+    }
+
+    /// All primitives.
+    pub fn primitives(&self) -> &[Primitive] {
+        &self.primitives
+    }
+
+    /// The primitive of this name.
+    ///
+    /// # Errors
+    /// For an unknown name; the message lists the known ones.
+    pub fn primitive(&self, name: &str) -> Result<&Primitive> {
+        self.primitives
+            .iter()
+            .find(|p| p.name == name)
+            .ok_or_else(|| {
+                Error::unknown_name(
+                    "primitive",
+                    name,
+                    self.primitives.iter().map(|p| p.name.as_str()),
+                )
+            })
+    }
+
+    /// The second level: behaviours and their primitives.
+    pub fn behaviors(&self) -> &[Behavior] {
+        &self.behaviors
+    }
+
+    /// How primitives followed one another.
+    pub fn transitions(&self) -> &Transitions {
+        &self.transitions
+    }
+}
