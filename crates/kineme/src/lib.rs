@@ -1,5 +1,6 @@
 //! Kineme: motor primitives from motion capture.
 
+pub mod choreography;
 pub mod error;
 pub mod math;
 pub mod motion;

@@ -1,0 +1,148 @@
+//! Comma-separated tables with a header, read row by row with line numbers.
+
+use std::collections::HashSet;
+use std::io::Read;
+
+use crate::error::{FormatError, Place, Result};
+
+/// A table being read: its header, then its rows.
+pub(crate) struct Sheet<R> {
+    file: String,
+    reader: csv::Reader<R>,
+    header: Vec<String>,
+    record: csv::ByteRecord,
+}
+
+impl<R: Read> Sheet<R> {
+    /// Reads the header. Spaces round cells and a byte order mark are dropped; `expected` describes the
+    /// header for the error of an empty file.
+    pub fn open(file: &str, reader: R, expected: &str) -> Result<Self> {
+        let reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .from_reader(reader);
+        let mut sheet = Self {
+            file: file.to_string(),
+            reader,
+            header: Vec::new(),
+            record: csv::ByteRecord::new(),
+        };
+        let Some(row) = sheet.read()? else {
+            return Err(FormatError::new(
+                file,
+                Place::File,
+                "nothing in the file",
+                expected,
+            ));
+        };
+        let header = (0..row.len())
+            .map(|i| row.text(i).map(str::to_string))
+            .collect::<Result<Vec<_>>>()?;
+        let mut seen = HashSet::new();
+        if let Some(twice) = header.iter().find(|h| !seen.insert(h.as_str())) {
+            return Err(row.error(format!("column `{twice}` twice"), "every column once"));
+        }
+        sheet.header = header;
+        Ok(sheet)
+    }
+
+    /// The header's cells, trimmed, each once.
+    pub fn header(&self) -> &[String] {
+        &self.header
+    }
+
+    /// The next row, with as many cells as the header; `None` at the end.
+    pub fn next_row(&mut self) -> Result<Option<Row<'_>>> {
+        let columns = self.header.len();
+        let Some(row) = self.read()? else {
+            return Ok(None);
+        };
+        if row.len() != columns {
+            return Err(row.error(
+                format!("{} cells", row.len()),
+                format!("{columns}, as in the header"),
+            ));
+        }
+        Ok(Some(row))
+    }
+
+    fn read(&mut self) -> Result<Option<Row<'_>>> {
+        let more = self
+            .reader
+            .read_byte_record(&mut self.record)
+            .map_err(|e| {
+                FormatError::new(
+                    &self.file,
+                    Place::File,
+                    e.to_string(),
+                    "a comma-separated table",
+                )
+            })?;
+        // The reader counts the line on which it starts to look, which may be an empty one before the row.
+        let line = self.record.position().map_or(0, |p| p.line() as usize);
+        Ok(more.then_some(Row {
+            file: &self.file,
+            line,
+            record: &self.record,
+        }))
+    }
+}
+
+/// One row of a table.
+pub(crate) struct Row<'a> {
+    file: &'a str,
+    line: usize,
+    record: &'a csv::ByteRecord,
+}
+
+impl<'a> Row<'a> {
+    /// The row's line, from 1.
+    pub fn line(&self) -> usize {
+        self.line
+    }
+
+    /// The number of cells.
+    pub fn len(&self) -> usize {
+        self.record.len()
+    }
+
+    /// An error on this row.
+    pub fn error(&self, found: impl Into<String>, expected: impl Into<String>) -> FormatError {
+        FormatError::new(self.file, Place::Line(self.line), found, expected)
+    }
+
+    /// A cell as text.
+    pub fn text(&self, column: usize) -> Result<&'a str> {
+        let cell = self.record.get(column).unwrap_or_default();
+        std::str::from_utf8(cell).map_err(|_| self.error("bytes that are no text", "UTF-8"))
+    }
+
+    /// A cell as a finite number; `None` when it is empty or NaN: missing.
+    pub fn number(&self, column: usize) -> Result<Option<f64>> {
+        let text = self.text(column)?;
+        if text.is_empty() || text.eq_ignore_ascii_case("nan") {
+            return Ok(None);
+        }
+        match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(Some(value)),
+            _ => Err(self.error(quoted(text), "a finite number, or nothing")),
+        }
+    }
+
+    /// A cell as a finite number that must be there; `what` names it in the error.
+    pub fn required(&self, column: usize, what: &str) -> Result<f64> {
+        self.number(column)?
+            .ok_or_else(|| self.error(format!("no {what}"), "a finite number"))
+    }
+}
+
+/// A piece of a file for a message: quoted, and cut when it is long.
+pub(crate) fn quoted(text: &str) -> String {
+    const SHOWN: usize = 60;
+    if text.chars().count() <= SHOWN {
+        return format!("`{text}`");
+    }
+    let start: String = text.chars().take(SHOWN).collect();
+    format!("`{start}...`")
+}

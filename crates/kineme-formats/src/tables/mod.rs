@@ -1,0 +1,8 @@
+//! Tables of motion: joint positions, MSR-Action3D text, joint angles.
+
+pub mod angles;
+mod kinect;
+pub mod msr;
+pub mod positions;
+mod timebase;
+mod upright;
