@@ -1,5 +1,7 @@
 //! Kineme: motor primitives from motion capture.
 
+pub mod clustering;
+pub mod embedding;
 pub mod error;
 pub mod math;
 pub mod motion;
