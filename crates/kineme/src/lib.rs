@@ -1,6 +1,8 @@
 //! Kineme: motor primitives from motion capture.
 
 pub mod choreography;
+pub mod clustering;
+pub mod embedding;
 pub mod error;
 pub mod math;
 pub mod motion;
