@@ -1,2 +1,58 @@
-//! x
-fn main() {}
+//! `cargo xtask`: the commands of those who work on the project.
+
+mod commands;
+mod tidy;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+const HELP: &str = "\
+cargo xtask COMMAND: what those who work on kineme run
+
+  test [--quick]             all that CI asks: formatting, tidy, clippy with warnings denied, tests
+                             and doc-tests, documentation with warnings denied.
+                             --quick leaves out doc-tests and documentation
+  tidy                       only the rules that rustc and clippy do not know: floors between rooms
+                             (the table in ARCHITECTURE.md), length of files, paths named in documents,
+                             the code map, the CHANGELOG's heading, paths of somebody's machine
+  demo [-- ARGS]             kineme demo ARGS, in release
+  fuzz [TARGET] [SECONDS]    run one fuzz target, or each in turn, for so long (60 s); wants cargo-fuzz
+
+CI runs `cargo xtask test` and nothing else: what passes here passes there.
+";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let done = match arguments.as_slice() {
+        [] | ["help" | "--help" | "-h", ..] => {
+            print!("{HELP}");
+            Ok(())
+        }
+        ["test"] => commands::test(&root(), false),
+        ["test", "--quick"] => commands::test(&root(), true),
+        ["tidy"] => tidy::run(&root()),
+        ["demo", "--", rest @ ..] | ["demo", rest @ ..] => commands::demo(&root(), rest),
+        ["fuzz", rest @ ..] => commands::fuzz(&root(), rest),
+        other => {
+            eprint!(
+                "cargo xtask: cannot make sense of `{}`\n\n{HELP}",
+                other.join(" ")
+            );
+            return ExitCode::from(2);
+        }
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The workspace: the folder above this crate.
+fn root() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().unwrap_or(here).to_path_buf()
+}

@@ -1,0 +1,181 @@
+//! Commands that run other programs.
+
+use std::io::{ErrorKind, Write as _};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::tidy;
+
+/// Result of a command: the message of a failure is all that a caller prints.
+pub type Outcome = Result<(), String>;
+
+/// Runs everything that CI asks and prints each step with its time; goes on after a failure, so that one run tells all.
+pub fn test(root: &Path, quick: bool) -> Outcome {
+    let begun = Instant::now();
+    let mut failed: Vec<&str> = Vec::new();
+    let mut count = 0;
+    let mut step = |name: &'static str, work: &dyn Fn() -> Outcome| {
+        println!("== {name}");
+        let begun = Instant::now();
+        let outcome = work();
+        if let Err(message) = &outcome {
+            eprintln!("{message}");
+            failed.push(name);
+        }
+        let word = if outcome.is_ok() { "ok" } else { "FAILED" };
+        println!("== {name}: {word}, {}", seconds(begun.elapsed()));
+        count += 1;
+    };
+    step("format", &|| cargo(root, &["fmt", "--all", "--check"], &[]));
+    step("tidy", &|| tidy::run(root));
+    step("clippy", &|| {
+        let lints = [
+            "clippy",
+            "--workspace",
+            "--all-targets",
+            "--",
+            "-D",
+            "warnings",
+        ];
+        cargo(root, &lints, &[])
+    });
+    if quick {
+        step("tests", &|| {
+            cargo(
+                root,
+                &["test", "--workspace", "--lib", "--bins", "--tests"],
+                &[],
+            )
+        });
+    } else {
+        step("tests", &|| cargo(root, &["test", "--workspace"], &[]));
+        step("documentation", &|| {
+            let denied = [("RUSTDOCFLAGS", "-D warnings")];
+            cargo(root, &["doc", "--workspace", "--no-deps"], &denied)
+        });
+    }
+    let took = seconds(begun.elapsed());
+    if failed.is_empty() {
+        println!("passed: {count} steps in {took}");
+        Ok(())
+    } else {
+        Err(format!(
+            "FAILED: {} (of {count} steps, {took})",
+            failed.join(", ")
+        ))
+    }
+}
+
+/// `kineme demo` with these arguments, in release.
+pub fn demo(root: &Path, arguments: &[&str]) -> Outcome {
+    let mut line = vec!["run", "--release", "--package", "kineme-cli", "--", "demo"];
+    line.extend(arguments);
+    cargo(root, &line, &[])
+}
+
+/// Runs a fuzz target for some seconds, or every target in turn.
+pub fn fuzz(root: &Path, arguments: &[&str]) -> Outcome {
+    let (target, seconds) = fuzz_arguments(arguments)?;
+    let known = fuzz_targets(root);
+    if known.is_empty() {
+        return Err("there are no fuzz targets: fuzz/fuzz_targets holds no .rs file".into());
+    }
+    let chosen: Vec<&String> = match target {
+        None => known.iter().collect(),
+        Some(name) => match known.iter().find(|k| *k == name) {
+            Some(found) => vec![found],
+            None => {
+                let known = known.join(", ");
+                return Err(format!("no fuzz target `{name}`; there are: {known}"));
+            }
+        },
+    };
+    let probe = Command::new("cargo")
+        .args(["fuzz", "--version"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
+    if !probe.is_ok_and(|status| status.success()) {
+        return Err("cargo-fuzz is not here. It wants a nightly compiler:\n  \
+                    rustup toolchain install nightly\n  cargo install cargo-fuzz"
+            .into());
+    }
+    for target in chosen {
+        let limit = format!("-max_total_time={seconds}");
+        cargo(
+            root,
+            &["+nightly", "fuzz", "run", target, "--", &limit],
+            &[],
+        )?;
+    }
+    Ok(())
+}
+
+fn fuzz_arguments<'a>(arguments: &[&'a str]) -> Result<(Option<&'a str>, u32), String> {
+    let whole = |text: &str| {
+        text.parse::<u32>()
+            .map_err(|_| format!("`{text}` is not a whole number of seconds"))
+    };
+    match arguments {
+        [] => Ok((None, 60)),
+        [one] => Ok(one.parse().map_or((Some(*one), 60), |secs| (None, secs))),
+        [target, secs] => Ok((Some(*target), whole(secs)?)),
+        more => Err(format!(
+            "fuzz takes a target and seconds, not `{}`",
+            more.join(" ")
+        )),
+    }
+}
+
+fn fuzz_targets(root: &Path) -> Vec<String> {
+    let Ok(folder) = std::fs::read_dir(root.join("fuzz/fuzz_targets")) else {
+        return Vec::new();
+    };
+    let mut names: Vec<String> = folder
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|e| e == "rs"))
+        .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
+        .collect();
+    names.sort();
+    names
+}
+
+/// Runs cargo in the workspace with its output on ours.
+fn cargo(root: &Path, arguments: &[&str], variables: &[(&str, &str)]) -> Outcome {
+    // Ours must stand before what the child prints.
+    let _ = std::io::stdout().flush();
+    // `+nightly` is read by the rustup proxy alone, which is `cargo` on PATH and not $CARGO.
+    let outcome = Command::new("cargo")
+        .args(arguments)
+        .envs(variables.iter().copied())
+        .current_dir(root)
+        .status();
+    let line = arguments.join(" ");
+    match outcome {
+        Ok(status) if status.success() => Ok(()),
+        Ok(_) => Err(format!("cargo {line}: failed")),
+        Err(error) if error.kind() == ErrorKind::NotFound => Err("cargo is not on PATH".to_owned()),
+        Err(error) => Err(format!("cargo {line}: {error}")),
+    }
+}
+
+fn seconds(time: Duration) -> String {
+    format!("{:.1} s", time.as_secs_f64())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fuzz_arguments;
+
+    #[test]
+    fn fuzz_takes_a_target_seconds_or_both() {
+        assert_eq!(fuzz_arguments(&[]), Ok((None, 60)));
+        assert_eq!(fuzz_arguments(&["bvh"]), Ok((Some("bvh"), 60)));
+        assert_eq!(fuzz_arguments(&["5"]), Ok((None, 5)));
+        assert_eq!(fuzz_arguments(&["bvh", "5"]), Ok((Some("bvh"), 5)));
+        assert!(fuzz_arguments(&["bvh", "long"]).is_err());
+        assert!(fuzz_arguments(&["bvh", "5", "6"]).is_err());
+    }
+}
