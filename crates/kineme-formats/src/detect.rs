@@ -1,0 +1,182 @@
+//! Which format a file is, told by content and extension, and the one place that sends it to its reader.
+
+use kineme::Recording;
+
+use crate::error::{FormatError, Place, Result};
+use crate::text::{Blame, Lines, number, words};
+use crate::{amc, asf, bvh, deepmimic};
+
+/// Bytes from the beginning of a file that suffice to tell its format.
+pub const HEAD: usize = 1 << 16;
+
+/// What a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Kind {
+    /// Biovision hierarchy.
+    Bvh,
+    /// Acclaim skeleton: no motion, but motions need it.
+    Asf,
+    /// Acclaim motion.
+    Amc,
+    /// DeepMimic clip.
+    DeepMimic,
+    /// Table of joint positions with a `frame` column: no time base.
+    Positions,
+    /// Table of joint positions with a `time` column.
+    TimedPositions,
+    /// MSR-Action3D skeleton text.
+    Msr,
+    /// Joint-angle table, as `convert` writes it.
+    Angles,
+    /// Marker file of the Biomechanics community; told, not read.
+    C3d,
+    /// Archive that acts as a folder.
+    Zip,
+}
+
+impl Kind {
+    /// The name as people write it in `--input-rate FORMAT=HZ`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Bvh => "bvh",
+            Kind::Asf => "asf",
+            Kind::Amc => "amc",
+            Kind::DeepMimic => "deepmimic",
+            Kind::Positions | Kind::TimedPositions => "positions",
+            Kind::Msr => "msr",
+            Kind::Angles => "angles",
+            Kind::C3d => "c3d",
+            Kind::Zip => "zip",
+        }
+    }
+
+    /// Frames a second that are assumed where the format has no time base and nobody says another.
+    pub fn default_rate_hz(self) -> Option<f64> {
+        match self {
+            Kind::Amc => Some(amc::DEFAULT_RATE_HZ),
+            Kind::Positions => Some(30.0),
+            Kind::Msr => Some(15.0),
+            _ => None,
+        }
+    }
+}
+
+/// The kind of a file of this name that begins with `head` (at most [`HEAD`] bytes are looked at); `None` for what is
+/// no motion format.
+///
+/// Content decides where it is unmistakable. Where it is not, the extension says what the file means to be, so that
+/// a damaged motion is an error and not ignored.
+pub fn detect(name: &str, head: &[u8]) -> Option<Kind> {
+    let head = &head[..head.len().min(HEAD)];
+    by_content(head).or_else(|| by_extension(name))
+}
+
+/// The kind that an extension promises, in any case; `None` for extensions shared with other things.
+pub fn by_extension(name: &str) -> Option<Kind> {
+    let (_, extension) = name.rsplit_once('.')?;
+    match extension.to_ascii_lowercase().as_str() {
+        "bvh" => Some(Kind::Bvh),
+        "asf" => Some(Kind::Asf),
+        "amc" => Some(Kind::Amc),
+        "c3d" => Some(Kind::C3d),
+        "zip" => Some(Kind::Zip),
+        _ => None,
+    }
+}
+
+fn by_content(head: &[u8]) -> Option<Kind> {
+    if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
+        return Some(Kind::Zip);
+    }
+    // A text may be cut at the head's end, so its last line is not looked at unless it is the only one.
+    let mut lines = Lines::new(head);
+    let (_, first) = lines.next_full()?;
+    if first.eq_ignore_ascii_case(b"HIERARCHY") {
+        return Some(Kind::Bvh);
+    }
+    if first.starts_with(b"{") {
+        let frames = head.windows(8).any(|w| w == b"\"Frames\"");
+        return frames.then_some(Kind::DeepMimic);
+    }
+    if first.starts_with(b"#") || first.starts_with(b":") {
+        return Lines::new(head).find_map(|(_, line)| {
+            let line = line.to_ascii_lowercase();
+            match line.as_slice() {
+                b":fully-specified" => Some(Kind::Amc),
+                b":bonedata" => Some(Kind::Asf),
+                _ => None,
+            }
+        });
+    }
+    if let Some(kind) = table(first) {
+        return Some(kind);
+    }
+    let four = |line: &[u8]| {
+        let mut count = 0;
+        words(line).all(|w| {
+            count += 1;
+            number(w).is_some()
+        }) && count == 4
+    };
+    let second = lines.next_full().map(|(_, line)| line);
+    (four(first) && second.is_some_and(four)).then_some(Kind::Msr)
+}
+
+/// A table's kind by its header.
+fn table(header: &[u8]) -> Option<Kind> {
+    let text = std::str::from_utf8(header).ok()?;
+    let mut columns = text.split(',').map(|c| c.trim().trim_matches('"'));
+    let key = columns.next()?;
+    let columns: Vec<&str> = columns.collect();
+    if key == "time" && columns.starts_with(&["root_x", "root_y", "root_z", "root_yaw"]) {
+        return Some(Kind::Angles);
+    }
+    let triple = |three: &[&str]| match three {
+        [x, y, z] => x
+            .strip_suffix("_x")
+            .is_some_and(|j| y.strip_suffix("_y") == Some(j) && z.strip_suffix("_z") == Some(j)),
+        _ => false,
+    };
+    let positions = !columns.is_empty() && columns.chunks(3).all(triple);
+    match key {
+        "frame" if positions => Some(Kind::Positions),
+        "time" if positions => Some(Kind::TimedPositions),
+        _ => None,
+    }
+}
+
+/// Reads the bytes of a motion of a known kind. `rate_hz` serves formats without a time base; `skeleton` is the one
+/// that an AMC belongs to.
+///
+/// # Errors
+/// [`FormatError`] of the format's reader, or where this version has no reader for it.
+pub fn parse(
+    kind: Kind,
+    name: &str,
+    bytes: &[u8],
+    rate_hz: Option<f64>,
+    skeleton: Option<&asf::Skeleton>,
+) -> Result<Recording> {
+    let unread = |what: &str| {
+        Err(FormatError::new(
+            name,
+            Place::File,
+            format!("{what} is not read by this version"),
+            "BVH, ASF/AMC, DeepMimic, a position table or MSR-Action3D text",
+        ))
+    };
+    match kind {
+        Kind::Bvh => bvh::parse(name, bytes),
+        Kind::DeepMimic => deepmimic::parse(name, bytes),
+        Kind::Amc => match skeleton {
+            Some(skeleton) => amc::parse(name, bytes, skeleton, rate_hz),
+            None => Err(Blame(name).file("an AMC without its ASF", "a skeleton file beside it")),
+        },
+        Kind::Asf => Err(Blame(name).file("a skeleton", "a motion (`.amc`) of it")),
+        Kind::Positions | Kind::TimedPositions => unread("a position table"),
+        Kind::Msr => unread("MSR-Action3D text"),
+        Kind::Angles => unread("a joint-angle table"),
+        Kind::C3d => unread("C3D"),
+        Kind::Zip => Err(Blame(name).file("an archive inside an archive", "a motion")),
+    }
+}

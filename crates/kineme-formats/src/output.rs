@@ -1,0 +1,74 @@
+//! Output that is there completely or not at all.
+
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use crate::error::{FormatError, Place, Result};
+
+/// What to do about a file that exists already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Existing {
+    /// Refuse to write.
+    #[default]
+    Keep,
+    /// Put the new one in its place.
+    Replace,
+}
+
+/// Writes a file through a temporary one beside it, renamed when complete: nobody ever reads half of it, and a
+/// failure leaves what was there. Parent folders are made.
+///
+/// # Errors
+/// When the file exists and is to be kept, when the disk refuses, or whatever `content` returns.
+pub fn write(
+    path: &Path,
+    existing: Existing,
+    content: impl FnOnce(&mut dyn Write) -> Result<()>,
+) -> Result<()> {
+    let shown = path.display().to_string();
+    let wrong = |found: String, expected: &str| {
+        FormatError::new(shown.clone(), Place::File, found, expected)
+    };
+    let failed = |e: io::Error| wrong(e.to_string(), "a file that can be written");
+    let refused = || {
+        wrong(
+            "an existing file".into(),
+            "a new name, or leave to overwrite it",
+        )
+    };
+    // Asked before the work, and once more by the system when the name is taken.
+    if existing == Existing::Keep && path.symlink_metadata().is_ok() {
+        return Err(refused());
+    }
+    if path.is_dir() {
+        return Err(wrong("a folder".into(), "the name of a file"));
+    }
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    std::fs::create_dir_all(folder).map_err(failed)?;
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".kineme-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As any new file's, less what the user's mask takes away; temporary files are private by default.
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let temporary = builder.tempfile_in(folder).map_err(failed)?;
+    let mut out = BufWriter::new(temporary);
+    content(&mut out)?;
+    let temporary = out.into_inner().map_err(|e| failed(e.into_error()))?;
+    match existing {
+        Existing::Keep => temporary.persist_noclobber(path).map_err(|e| {
+            if e.error.kind() == io::ErrorKind::AlreadyExists {
+                refused()
+            } else {
+                failed(e.error)
+            }
+        })?,
+        Existing::Replace => temporary.persist(path).map_err(|e| failed(e.error))?,
+    };
+    Ok(())
+}
