@@ -43,7 +43,8 @@ pub struct AngleRows<R> {
 
 /// Whether a file that starts with this line looks like a table of joint angles.
 pub fn sniff(header: &str) -> bool {
-    let cells = header
+    let first_line = header.lines().next().unwrap_or_default();
+    let cells = first_line
         .trim_start_matches('\u{feff}')
         .trim_end()
         .split(',')
