@@ -183,6 +183,17 @@ impl<'a> Row<'a> {
     }
 }
 
+/// The first cells of a table that starts with these bytes, at most `count`, as text: to tell tables apart.
+pub(crate) fn first_cells(head: &[u8], count: usize) -> Vec<String> {
+    let text = String::from_utf8_lossy(head);
+    let line = text.trim_start_matches('\u{feff}').trim_start();
+    let line = line.lines().next().unwrap_or_default();
+    line.split(',')
+        .take(count)
+        .map(|cell| cell.trim().trim_matches('"').to_string())
+        .collect()
+}
+
 /// A piece of a file for a message: quoted, and cut when it is long.
 pub(crate) fn quoted(text: &str) -> String {
     const SHOWN: usize = 60;

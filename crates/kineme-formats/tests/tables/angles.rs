@@ -170,6 +170,6 @@ fn what_would_not_read_back_is_not_written() {
 
 #[test]
 fn the_header_is_known() {
-    assert!(sniff(EXAMPLE));
-    assert!(!sniff("time,root_x,root_y,root_z,head_x"));
+    assert!(sniff(EXAMPLE.as_bytes()));
+    assert!(!sniff(b"time,root_x,root_y,root_z,head_x"));
 }

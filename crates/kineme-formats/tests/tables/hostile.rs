@@ -22,9 +22,11 @@ fn read_by_all(bytes: &[u8]) {
         let again = VocabularyFile::parse("a", &file.write("a").unwrap()).unwrap();
         assert_eq!(again, file);
     }
-    let _ = msr::sniff(bytes);
-    let text = String::from_utf8_lossy(bytes);
-    let _ = (positions::sniff(&text), angles::sniff(&text));
+    let _ = (
+        msr::sniff(bytes),
+        positions::sniff(bytes),
+        angles::sniff(bytes),
+    );
 }
 
 /// One whole file of each kind.
@@ -41,6 +43,18 @@ fn whole_files() -> Vec<Vec<u8>> {
     files.push("0.1 0.2 2.5 1.0\n".repeat(40).into_bytes());
     files.push(crate::vocabulary::example().write("v").unwrap());
     files
+}
+
+#[test]
+fn deep_nesting_and_long_lines_are_refused() {
+    const MANY: usize = 200_000;
+    for text in ["[", "{a=", "a.", "(", ",", "\"", "0 ", "1e"] {
+        read_by_all(format!("body = {}", text.repeat(MANY)).as_bytes());
+        read_by_all(text.repeat(MANY).as_bytes());
+    }
+    let header = "[".repeat(MANY);
+    let container = [&(MANY as u64).to_le_bytes(), header.as_bytes()].concat();
+    assert!(VocabularyFile::parse("a", &container).is_err());
 }
 
 /// Pieces that matter to one of the readers.

@@ -236,6 +236,6 @@ fn the_header_tells_positions_from_angles() {
         ("", false),
     ];
     for (header, positions) in cases {
-        assert_eq!(sniff(header), positions, "{header}");
+        assert_eq!(sniff(header.as_bytes()), positions, "{header}");
     }
 }
