@@ -1,6 +1,6 @@
 //! Comma-separated tables with a header, read row by row with line numbers.
 
-use std::collections::HashSet;
+use std::collections::{HashSet, VecDeque};
 use std::io::Read;
 
 use crate::error::{FormatError, Place, Result};
@@ -8,7 +8,7 @@ use crate::error::{FormatError, Place, Result};
 /// A table being read: its header, then its rows.
 pub(crate) struct Sheet<R> {
     file: String,
-    reader: csv::Reader<R>,
+    reader: csv::Reader<LineStarts<R>>,
     header: Vec<String>,
     record: csv::ByteRecord,
 }
@@ -21,7 +21,7 @@ impl<R: Read> Sheet<R> {
             .has_headers(false)
             .flexible(true)
             .trim(csv::Trim::All)
-            .from_reader(reader);
+            .from_reader(LineStarts::new(reader));
         let mut sheet = Self {
             file: file.to_string(),
             reader,
@@ -79,13 +79,59 @@ impl<R: Read> Sheet<R> {
                     "a comma-separated table",
                 )
             })?;
-        // The reader counts the line on which it starts to look, which may be an empty one before the row.
-        let line = self.record.position().map_or(0, |p| p.line() as usize);
+        let start = self.record.position().map_or(0, csv::Position::byte);
+        let line = self.reader.get_mut().line_from(start);
         Ok(more.then_some(Row {
             file: &self.file,
             line,
             record: &self.record,
         }))
+    }
+}
+
+/// Passes bytes on and notes where lines begin: `csv` counts neither empty lines nor CRLF as an editor does.
+struct LineStarts<R> {
+    inner: R,
+    offset: u64,
+    line: usize,
+    fresh: bool,
+    /// Offset of the first byte and number of each line that is not empty, those yet to be asked for.
+    starts: VecDeque<(u64, usize)>,
+}
+
+impl<R> LineStarts<R> {
+    fn new(inner: R) -> Self {
+        Self {
+            inner,
+            offset: 0,
+            line: 1,
+            fresh: true,
+            starts: VecDeque::new(),
+        }
+    }
+
+    /// The number, from 1, of the first line that is not empty and begins at `offset` or later.
+    fn line_from(&mut self, offset: u64) -> usize {
+        while self.starts.front().is_some_and(|(at, _)| *at < offset) {
+            self.starts.pop_front();
+        }
+        self.starts.front().map_or(self.line, |(_, line)| *line)
+    }
+}
+
+impl<R: Read> Read for LineStarts<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.inner.read(buffer)?;
+        for &byte in &buffer[..count] {
+            let ends = matches!(byte, b'\n' | b'\r');
+            if self.fresh && !ends {
+                self.starts.push_back((self.offset, self.line));
+            }
+            self.fresh = ends;
+            self.line += usize::from(byte == b'\n');
+            self.offset += 1;
+        }
+        Ok(count)
     }
 }
 
@@ -135,6 +181,17 @@ impl<'a> Row<'a> {
         self.number(column)?
             .ok_or_else(|| self.error(format!("no {what}"), "a finite number"))
     }
+}
+
+/// The first cells of a table that starts with these bytes, at most `count`, as text: to tell tables apart.
+pub(crate) fn first_cells(head: &[u8], count: usize) -> Vec<String> {
+    let text = String::from_utf8_lossy(head);
+    let line = text.trim_start_matches('\u{feff}').trim_start();
+    let line = line.lines().next().unwrap_or_default();
+    line.split(',')
+        .take(count)
+        .map(|cell| cell.trim().trim_matches('"').to_string())
+        .collect()
 }
 
 /// A piece of a file for a message: quoted, and cut when it is long.

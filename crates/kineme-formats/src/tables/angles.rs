@@ -5,7 +5,7 @@
 use std::io::Read;
 
 use crate::error::{FormatError, Place, Result};
-use crate::sheet::{Row, Sheet};
+use crate::sheet::{Row, Sheet, first_cells};
 
 /// The columns every table begins with: seconds, metres (z up), radians.
 pub const FIXED_COLUMNS: [&str; 5] = ["time", "root_x", "root_y", "root_z", "root_yaw"];
@@ -41,14 +41,9 @@ pub struct AngleRows<R> {
     last_time: Option<f64>,
 }
 
-/// Whether a file that starts with this line looks like a table of joint angles.
-pub fn sniff(header: &str) -> bool {
-    let cells = header
-        .trim_start_matches('\u{feff}')
-        .trim_end()
-        .split(',')
-        .map(|c| c.trim().trim_matches('"'));
-    cells.take(FIXED_COLUMNS.len()).eq(FIXED_COLUMNS)
+/// Whether a file that starts with these bytes looks like a table of joint angles.
+pub fn sniff(head: &[u8]) -> bool {
+    first_cells(head, FIXED_COLUMNS.len()) == FIXED_COLUMNS
 }
 
 impl<R: Read> AngleRows<R> {

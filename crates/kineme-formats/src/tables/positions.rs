@@ -5,36 +5,28 @@ use std::collections::HashMap;
 use kineme::{Format, Observed, RecordedJoint, Recording, Source};
 use nalgebra::Vector3;
 
-use super::{kinect, timebase, upright};
+use super::{angles, kinect, timebase, upright};
 use crate::error::{FormatError, Place, Result};
-use crate::sheet::Sheet;
+use crate::sheet::{Sheet, first_cells};
 
 /// Frames a second where neither the table nor the caller says.
 pub const DEFAULT_RATE_HZ: f64 = 30.0;
 
 const HEADER: &str = "a header `frame,<joint>_x,<joint>_y,<joint>_z,...` (or `time` first)";
 
-/// Whether a file that starts with this line looks like a table of positions: `frame` or `time`, then the
-/// three coordinates of a joint. A table of joint angles, known by its `root_yaw`, is none.
-pub fn sniff(header: &str) -> bool {
-    let cells: Vec<&str> = header
-        .trim_start_matches('\u{feff}')
-        .trim_end()
-        .split(',')
-        .map(|c| c.trim().trim_matches('"'))
-        .collect();
-    let counted = ["frame", "time"].contains(&cells[0].to_lowercase().as_str());
-    let first: Vec<_> = cells
-        .iter()
-        .skip(1)
-        .take(3)
-        .map(|c| coordinate(c))
-        .collect();
-    let a_point = match first.as_slice() {
-        [Some((a, x)), Some((b, y)), Some((c, z))] => a == b && b == c && [*x, *y, *z] == [0, 1, 2],
+/// Whether a file that starts with these bytes looks like a table of positions: `frame` or `time`, then the
+/// three coordinates of a joint. A table of joint angles is none, though its root has coordinates too.
+pub fn sniff(head: &[u8]) -> bool {
+    let cells = first_cells(head, 4);
+    let [first, x, y, z] = cells.as_slice() else {
+        return false;
+    };
+    let counted = ["frame", "time"].contains(&first.to_lowercase().as_str());
+    let a_point = match (coordinate(x), coordinate(y), coordinate(z)) {
+        (Some((a, 0)), Some((b, 1)), Some((c, 2))) => a == b && b == c,
         _ => false,
     };
-    counted && a_point && !cells.contains(&"root_yaw")
+    counted && a_point && !angles::sniff(head)
 }
 
 /// Reads a recording.

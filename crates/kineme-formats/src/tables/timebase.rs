@@ -51,7 +51,8 @@ impl Clock {
         let steps: Vec<f64> = self.readings.windows(2).map(|w| w[1] - w[0]).collect();
         let mut sorted = steps.clone();
         sorted.sort_by(f64::total_cmp);
-        let median = sorted.get(sorted.len() / 2).copied();
+        // The lower median: of two steps the longer is the gap.
+        let median = sorted.get(sorted.len().saturating_sub(1) / 2).copied();
 
         // A grid far longer than the table is a broken time column, not a gap, and would cost memory.
         let most = 4 * self.readings.len();

@@ -163,7 +163,7 @@ impl View for Tensor {
         &self.shape
     }
 
-    fn data(&self) -> std::borrow::Cow<'_, [u8]> {
+    fn data(&self) -> Cow<'_, [u8]> {
         self.bytes.as_slice().into()
     }
 
