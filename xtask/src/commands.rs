@@ -52,7 +52,7 @@ pub fn test(root: &Path, quick: bool) -> Outcome {
         step("tests", &|| cargo(root, &["test", "--workspace"], &[]));
         step("documentation", &|| {
             let denied = [("RUSTDOCFLAGS", "-D warnings")];
-            cargo(root, &["doc", "--workspace", "--no-deps"], &denied)
+            cargo(root, &["doc", "--workspace", "--no-deps", "--lib"], &denied)
         });
     }
     let took = seconds(begun.elapsed());

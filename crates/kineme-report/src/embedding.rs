@@ -170,6 +170,9 @@ fn draw_view(
         .iter()
         .map(|(i, point)| (*i, view.pixel(point)))
         .collect();
+    // Thousands of lines must not become a wall.
+    let opacity = (60.0 / drawn.len() as f64).clamp(0.035, 0.3);
+    svg.open(&format!("stroke-opacity=\"{opacity:.3}\""), "");
     for recording in data.recordings {
         let line: Vec<[f64; 2]> = recording
             .iter()
@@ -177,6 +180,7 @@ fn draw_view(
             .collect();
         svg.polyline("class=\"chain\"", &line);
     }
+    svg.close();
     let radius = (3.8 - drawn.len() as f64 / 1200.0).clamp(2.0, 3.6);
     if !members.noise.is_empty() {
         let tooltip = format!("unclustered ({})", members.noise.len());
@@ -217,7 +221,7 @@ fn name_groups(svg: &mut Svg, view: &View, data: &Embedding, members: &Members) 
         let name = fitted(&data.names[group], look.size, 120.0);
         let half = 0.5 * text_width(&name, look.size);
         let (x, y) = (middle(0), middle(1));
-        let free = [-9.0, 17.0, -23.0, 31.0, -37.0].into_iter().find_map(|dy| {
+        let free = [-9.0, 17.0, -23.0].into_iter().find_map(|dy| {
             let x = x.clamp(view.left + half + 3.0, view.left + view.width - half - 3.0);
             let y = y + dy;
             let place = [x - half - 2.0, y - 11.0, x + half + 2.0, y + 3.0];

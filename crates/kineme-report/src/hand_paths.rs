@@ -12,7 +12,8 @@ const COLUMNS: usize = 3;
 const PANELS: usize = 24;
 const GAP: f64 = 16.0;
 const HEADER: f64 = 40.0;
-const DRAWING: f64 = 190.0;
+/// The height of a drawing at most.
+const DRAWING: f64 = 200.0;
 /// Most members whose own paths are drawn; the mean is always of all.
 const MEMBERS: usize = 24;
 /// Samples of a drawn path.
@@ -54,7 +55,7 @@ pub fn hand_paths(groups: &[GroupPaths]) -> String {
     draw_key(&mut svg);
     let frame = Frame::around(shown.iter().map(|i| &groups[*i]));
     let columns = COLUMNS.min(shown.len());
-    let height = HEADER + DRAWING + 12.0;
+    let height = HEADER + frame.height + 12.0;
     for (k, &i) in shown.iter().enumerate() {
         let left = MARGIN + (k % columns) as f64 * (PANEL_WIDTH + GAP);
         let top = 66.0 + (k / columns) as f64 * (height + GAP);
@@ -138,6 +139,8 @@ struct Frame {
     middle: [f64; 3],
     /// Pixels a metre.
     scale: f64,
+    /// How high a drawing is, pixels: no higher than its paths want.
+    height: f64,
     /// How the drawing's width is shared between the views, pixels.
     front: f64,
 }
@@ -153,12 +156,13 @@ impl Frame {
         let ranges = [range(0), range(1), range(2)];
         let size = |c: usize| (ranges[c][1] - ranges[c][0]).max(0.05);
         let room = PANEL_WIDTH - 52.0;
-        let scale = (room / (size(0) + size(1))).min((DRAWING - 20.0) / size(2));
+        let scale = (room / (size(0) + size(1))).min((DRAWING - 28.0) / size(2));
         // What the scale leaves over goes to both views alike.
         let spare = PANEL_WIDTH - scale * (size(0) + size(1));
         Self {
             middle: ranges.map(|[low, high]| 0.5 * (low + high)),
             scale,
+            height: (scale * size(2) + 28.0).clamp(80.0, DRAWING),
             front: scale * size(1) + 0.5 * spare,
         }
     }
@@ -173,7 +177,7 @@ impl Frame {
         };
         [
             left + middle + (point[across] - self.middle[across]) * self.scale,
-            top + HEADER + 0.5 * DRAWING - (point[2] - self.middle[2]) * self.scale,
+            top + HEADER + 0.5 * self.height - (point[2] - self.middle[2]) * self.scale,
         ]
     }
 }

@@ -23,10 +23,10 @@ main{max-width:1000px;margin:0 auto;padding:3rem 1.25rem 5rem}
 h1{font-size:2rem;line-height:1.2;font-weight:600;letter-spacing:-.01em;margin:0 0 1.25rem;text-wrap:balance}
 p{max-width:40rem;margin:0 0 .8rem;font-variant-numeric:oldstyle-nums}
 figure{margin:3rem 0 0;padding-top:1.5rem;border-top:1px solid var(--line)}
-.scroll{overflow-x:auto}
-figure svg{display:block;max-width:100%;height:auto;min-width:min(100%,620px)}
+.scroll{overflow-x:auto;margin-inline:-20px}
+figure svg{display:block;max-width:100%;height:auto}
 figcaption{max-width:40rem;margin-top:.75rem;color:var(--soft);font-size:.9rem;line-height:1.45}
-@media (max-width:660px){figure svg{max-width:none;min-width:620px}}
+@media (max-width:660px){figure svg{max-width:none}}
 @media print{main{max-width:none;padding:0}figure{break-inside:avoid}}";
 
 /// A page with a title, paragraphs of plain text and the figures in their order.

@@ -13,7 +13,10 @@ const HUES: [[f64; 3]; 6] = [
     [86.0, 180.0, 233.0],
 ];
 
-/// The colour of a group as `#rrggbb`: 18 are distinct, then they begin anew.
+/// How many groups have a colour of their own.
+pub const COLOURS: usize = 3 * HUES.len();
+
+/// The colour of a group as `#rrggbb`; after [`COLOURS`] they begin anew.
 pub fn colour(group: usize) -> String {
     let [r, g, b] = HUES[group % HUES.len()].map(|level| {
         let level = match group / HUES.len() % 3 {
@@ -106,7 +109,7 @@ mod tests {
             .map(|group| mark_style(group) + &mark(group, [0.0, 0.0], 3.0))
             .collect();
         assert_eq!(looks.len(), 72);
-        let colours: std::collections::BTreeSet<String> = (0..18).map(colour).collect();
-        assert_eq!(colours.len(), 18);
+        let colours: std::collections::BTreeSet<String> = (0..COLOURS).map(colour).collect();
+        assert_eq!(colours.len(), COLOURS);
     }
 }

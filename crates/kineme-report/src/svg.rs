@@ -9,7 +9,7 @@ svg.kineme{font-family:system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue
 .kineme .paper{fill:#fff}.kineme .ink{fill:#22262b}.kineme .soft{fill:#5f6872}\
 .kineme .panel{fill:#f6f7f8}.kineme .frame{fill:none;stroke:#8a929b;stroke-width:1}\
 .kineme .grid{fill:none;stroke:#dde1e5;stroke-width:1}.kineme .axis{fill:none;stroke:#5f6872;stroke-width:1}\
-.kineme .noise{fill:#a7aeb6}.kineme .chain{fill:none;stroke:#5f6872;stroke-opacity:.22;stroke-width:.7}\
+.kineme .noise{fill:#a7aeb6}.kineme .chain{fill:none;stroke:#5f6872;stroke-width:.7}\
 .kineme .halo{paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round}\
 .kineme .right{stroke:#17365c}.kineme .left{stroke:#e08e2b}.kineme .right-end{fill:#17365c}.kineme .left-end{fill:#e08e2b}\
 .kineme .on-dark{fill:#fff}.kineme .on-light{fill:#000}.kineme .on-heat{fill:#fff}\

@@ -45,9 +45,11 @@ pub fn transitions(names: &[String], counts: &[Vec<f64>]) -> String {
         .iter()
         .map(|i| text_width(&names[*i], look.size))
         .fold(0.0, f64::max);
-    let name_room = (widest + 10.0).clamp(70.0, 190.0);
-    let (left, top) = (MARGIN + name_room + 16.0, 60.0 + name_room);
+    let name_room = (widest + 10.0).clamp(40.0, 190.0);
+    let (left, top) = (MARGIN + name_room + 18.0, 48.0 + 0.9 * name_room);
     let side = cell * shown.len() as f64;
+    // Close columns leave no room for names that lean.
+    let lean = if cell < 16.0 { -90.0 } else { -60.0 };
     // Names of columns lean to the right: the last one needs room, too.
     let width = (left + side + 0.72 * name_room + MARGIN).max(420.0);
     let mut svg = Svg::new(width, 0.0, TITLE);
@@ -63,7 +65,7 @@ pub fn transitions(names: &[String], counts: &[Vec<f64>]) -> String {
             &name,
         );
         let x = left + along + 0.35 * look.size;
-        svg.text_turned(x, top - 6.0, Anchor::Start, look, -60.0, &name);
+        svg.text_turned(x, top - 6.0, Anchor::Start, look, lean, &name);
         if k % 5 == 0 && shown.len() > 12 {
             let edge = k as f64 * cell;
             svg.line("grid", [left, top + edge], [left + side, top + edge]);

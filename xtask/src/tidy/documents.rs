@@ -1,6 +1,6 @@
 //! What documents promise: paths that exist, a map of all code, a heading for the version, nobody's machine.
 
-use super::floors::{Floors, fenced_block};
+use super::floors::{Floors, ROOMS, fenced_block};
 use super::{ARCHITECTURE, Findings, Tree, is_source};
 
 /// Top folders whose name begins a path; a room such as `motion/recording.rs` is a word and not a path.
@@ -83,8 +83,8 @@ fn beside(document: &str, link: &str) -> Option<String> {
     Some(parts.join("/"))
 }
 
-/// The code map of ARCHITECTURE.md (the fenced block whose lines begin with `crates/` or `xtask/`) lists every source
-/// file, by itself or by a folder of its own below `src`, and nothing that is not there.
+/// The code map of ARCHITECTURE.md (the fenced block whose lines begin with `crates/` or `xtask/`) shows every source
+/// file, and nothing that is not there.
 pub fn check_code_map(tree: &Tree, floors: &Floors, findings: &mut Findings) {
     let is_map = |line: &str| line.starts_with("crates/") || line.starts_with("xtask/");
     let map: Vec<(usize, &str)> = fenced_block(tree.text(ARCHITECTURE), is_map)
@@ -113,16 +113,17 @@ pub fn check_code_map(tree: &Tree, floors: &Floors, findings: &mut Findings) {
     }
 }
 
-/// A map's entry shows a file if it is the file, the folder that holds it, or a folder above that still below `src`.
+/// A map's entry shows a file if it is the file, or a folder of its crate's `src` or below. The core's `src` itself
+/// shows only what stands right in it: each of its rooms wants an entry.
 fn shows(entry: &str, file: &str) -> bool {
     let Some(inside) = file.strip_prefix(entry) else {
         return false;
     };
-    let below_src = is_source(&format!("{entry}/x.rs")) && !entry.ends_with("/src");
-    let holds = inside
-        .strip_prefix('/')
-        .is_some_and(|rest| !rest.contains('/'));
-    inside.is_empty() || holds || (below_src && inside.starts_with('/'))
+    let Some(below) = inside.strip_prefix('/') else {
+        return inside.is_empty();
+    };
+    let in_sources = is_source(&format!("{entry}/x.rs"));
+    in_sources && (entry != ROOMS || !below.contains('/'))
 }
 
 /// CHANGELOG.md has a heading for the workspace's version.

@@ -90,7 +90,7 @@ pub fn made_up(groups: usize, segments: usize) -> MadeUp {
         let mut members = |side: f64| (0..size).map(|_| paths.member(&mut noise, side)).collect();
         made.paths.push(GroupPaths {
             name: name.clone(),
-            coherence: (g % 7 != 6).then(|| 0.82 - 0.17 * (g % 6) as f64),
+            coherence: (g % 7 != 6).then_some(0.82 - 0.17 * (g % 6) as f64),
             right: members(-1.0),
             left: members(1.0),
         });
