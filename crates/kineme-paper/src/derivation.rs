@@ -1,0 +1,312 @@
+//! Derivation on real people: the classes are hidden, groups are found, and only then compared with the classes.
+
+use std::collections::BTreeMap;
+
+use kineme::Motion;
+use kineme::clustering::{Density, hdbscan};
+use kineme::derivation::{Clustering, Cut, Derivation, Derived, Segment, SegmentDistances};
+use kineme::embedding::{EmbedOptions, Geodesics, NeighbourGraph, SpatioTemporal, embed};
+use kineme::math::distances::DistanceMatrix;
+use kineme::math::statistics::{agreement, noise_as_singletons};
+use rand::seq::SliceRandom;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+use crate::kmeans::kmeans;
+use crate::sets::{LabelledSet, Result};
+
+/// Clips of a set as they are compared: feature sequences and all warping distances.
+pub struct Clips<'a> {
+    set: &'a LabelledSet,
+    settings: Derivation,
+    sequences: Vec<Vec<f64>>,
+    distances: DistanceMatrix,
+    dims: usize,
+}
+
+/// Agreement of found groups with the hidden classes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Score {
+    /// Adjusted Rand index; an item without a group is a cluster of its own.
+    pub ari: f64,
+    /// Normalised mutual information, likewise.
+    pub nmi: f64,
+    /// Number of groups.
+    pub groups: usize,
+    /// Share of the items without a group.
+    pub noise: f64,
+}
+
+impl Score {
+    /// Compares found labels with the truth.
+    pub fn of(labels: &[Option<usize>], truth: &[usize]) -> Self {
+        let a = agreement(&noise_as_singletons(labels), truth);
+        let noise = labels.iter().filter(|l| l.is_none()).count();
+        Self {
+            ari: a.ari,
+            nmi: a.nmi,
+            groups: labels.iter().flatten().max().map_or(0, |m| m + 1),
+            noise: noise as f64 / labels.len().max(1) as f64,
+        }
+    }
+}
+
+/// In which order clips are strung into one performance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// Not at all: every clip is a recording of its own.
+    Separate,
+    /// In random order.
+    Random,
+    /// The classes alphabetically, one clip of each a round, which clip drawn at random.
+    Routine,
+}
+
+impl<'a> Clips<'a> {
+    /// The clips of a set, with features of this `shape`.
+    ///
+    /// # Errors
+    /// When the distances cannot be computed.
+    pub fn new(set: &'a LabelledSet, shape: f64) -> Result<Self> {
+        let mut settings = Derivation::new(Cut::Marks(Vec::new()));
+        settings.features.shape = shape;
+        let segments = separate(&set.motions);
+        let sequences = settings.sequences(&set.motions, &segments);
+        let dims = kineme::derivation::feature_dims(set.motions[0].skeleton());
+        let derived = settings.distances(&sequences, dims, &vec![None; segments.len()])?;
+        let SegmentDistances::All(distances) = derived else {
+            return Err("a set of labelled clips is small enough for all pairs".into());
+        };
+        Ok(Self {
+            set,
+            settings,
+            sequences,
+            distances,
+            dims,
+        })
+    }
+
+    /// Groups of the clips strung in this order.
+    ///
+    /// # Errors
+    /// When a step of the derivation fails.
+    pub fn derive(&self, order: Order, seed: u64) -> Result<Derived> {
+        let mut segments = separate(&self.set.motions);
+        for pair in self.order(order, seed).windows(2) {
+            segments[pair[0]].successor = Some(pair[1]);
+        }
+        let distances = SegmentDistances::All(self.distances.clone());
+        Ok(self.settings.group_by(distances, &self.sequences, segments, &mut |_| {})?)
+    }
+
+    /// The same with the distances permuted at random: what order alone gives.
+    ///
+    /// # Errors
+    /// When a step of the derivation fails.
+    pub fn derive_shuffled(&self, seed: u64) -> Result<Derived> {
+        let mut upper = self.distances.upper().to_vec();
+        let mut random = Pcg64::seed_from_u64(seed ^ 0x5eed);
+        upper.shuffle(&mut random);
+        
+        let distances = DistanceMatrix::from_upper(self.distances.len(), upper)?;
+        let mut segments = separate(&self.set.motions);
+        for pair in self.order(Order::Routine, seed).windows(2) {
+            segments[pair[0]].successor = Some(pair[1]);
+        }
+        let distances = SegmentDistances::All(distances);
+        Ok(self.settings.group_by(distances, &self.sequences, segments, &mut |_| {})?)
+    }
+
+    /// Items in the order of a performance; empty where each stands alone.
+    fn order(&self, order: Order, seed: u64) -> Vec<usize> {
+        let mut random = Pcg64::seed_from_u64(seed);
+        let n = self.set.labels.len();
+        match order {
+            Order::Separate => Vec::new(),
+            Order::Random => {
+                let mut items: Vec<usize> = (0..n).collect();
+                items.shuffle(&mut random);
+                items
+            }
+            Order::Routine => {
+                let mut left: Vec<Vec<usize>> = vec![Vec::new(); self.set.classes.len()];
+                for (i, &l) in self.set.labels.iter().enumerate() {
+                    left[l].push(i);
+                }
+                let mut items = Vec::with_capacity(n);
+                while items.len() < n {
+                    for class in left.iter_mut().filter(|c| !c.is_empty()) {
+                        items.push(class.swap_remove(random.random_range(0..class.len())));
+                    }
+                }
+                items
+            }
+        }
+    }
+
+    /// The score of a derivation's primitives.
+    pub fn score(&self, derived: &Derived) -> Score {
+        Score::of(&derived.labels, &self.set.labels)
+    }
+
+    /// The score of its sweep-and-prune groups.
+    pub fn score_sweep(&self, derived: &Derived) -> Score {
+        Score::of(&derived.sweep.labels, &self.set.labels)
+    }
+
+    /// Baseline: HDBSCAN on the warping distances, smallest group `size`.
+    ///
+    /// # Errors
+    /// When clustering refuses its settings.
+    pub fn dtw_hdbscan(&self, size: usize) -> Result<Score> {
+        let labels = hdbscan(&self.distances, &density(size))?;
+        Ok(Score::of(&labels, &self.set.labels))
+    }
+
+    /// Baseline: plain Isomap (K 8, six axes) and HDBSCAN.
+    ///
+    /// # Errors
+    /// When a step refuses its settings.
+    pub fn isomap_hdbscan(&self, size: usize) -> Result<Score> {
+        let none = vec![None; self.distances.len()];
+        let graph = NeighbourGraph::segmented(&self.distances, &none, &SpatioTemporal::isomap(8))?;
+        let options = EmbedOptions {
+            dimension: Some(6),
+            ..EmbedOptions::default()
+        };
+        let (embedding, _) = embed(&graph, &options)?;
+        let distances = DistanceMatrix::euclidean(&embedding.coordinates, embedding.dimension)?;
+        let labels = hdbscan(&distances, &density(size))?;
+        Ok(Score::of(&labels, &self.set.labels))
+    }
+
+    /// Baseline: k-means on the same features, told the true number of classes.
+    pub fn kmeans(&self, seed: u64) -> Score {
+        let labels = kmeans(&self.sequences, self.set.classes.len(), seed);
+        let labels: Vec<Option<usize>> = labels.into_iter().map(Some).collect();
+        Score::of(&labels, &self.set.labels)
+    }
+
+    /// The derivation's settings, to vary.
+    pub fn settings_mut(&mut self) -> &mut Derivation {
+        &mut self.settings
+    }
+
+    /// Numbers a frame of the features.
+    pub fn dims(&self) -> usize {
+        self.dims
+    }
+}
+
+fn density(size: usize) -> Density {
+    Density {
+        min_cluster_size: size,
+        min_samples: size,
+    }
+}
+
+fn separate(motions: &[Motion]) -> Vec<Segment> {
+    motions
+        .iter()
+        .enumerate()
+        .map(|(motion, m)| Segment {
+            motion,
+            frames: 0..m.frames(),
+            successor: None,
+        })
+        .collect()
+}
+
+/// Labels of a continuous recording at a constant rate.
+#[derive(Debug, Clone)]
+pub struct Annotation {
+    /// Class of each step.
+    pub labels: Vec<usize>,
+    /// Steps a second.
+    pub rate_hz: f64,
+}
+
+/// Frame-wise scores of a derivation from continuous recordings: of its primitives and of its behaviours. A step in no
+/// segment counts with its whole gap as a cluster of its own.
+pub fn frame_scores(derived: &Derived, motions: &[Motion], truth: &[Annotation]) -> (Score, Score) {
+    let mut classes = Vec::new();
+    let mut items: Vec<usize> = Vec::new();
+    let mut groups: BTreeMap<usize, Option<usize>> = BTreeMap::new();
+    let mut gap = derived.segments.len();
+    for (m, annotation) in truth.iter().enumerate() {
+        let rate = motions[m].rate_hz();
+        let mut inside = true;
+        for (step, &class) in annotation.labels.iter().enumerate() {
+            let frame = ((step as f64 + 0.5) / annotation.rate_hz * rate) as usize;
+            let segment = derived
+                .segments
+                .iter()
+                .position(|s| s.motion == m && s.frames.contains(&frame));
+            let item = match segment {
+                Some(s) => {
+                    inside = true;
+                    s
+                }
+                None => {
+                    if inside {
+                        gap += 1;
+                        inside = false;
+                    }
+                    gap
+                }
+            };
+            let label = segment.and_then(|s| derived.labels[s]);
+            groups.insert(item, label);
+            items.push(item);
+            classes.push(class);
+        }
+    }
+    let n = derived.groups.len();
+    let labelled = |of: &dyn Fn(usize) -> usize| -> Vec<usize> {
+        items
+            .iter()
+            .map(|&i| groups[&i].map_or(n + i, of))
+            .collect()
+    };
+    let noise = items.iter().filter(|i| groups[i].is_none()).count() as f64 / items.len() as f64;
+    let score = |labels: Vec<usize>, groups: usize| {
+        let a = agreement(&labels, &classes);
+        Score {
+            ari: a.ari,
+            nmi: a.nmi,
+            groups,
+            noise,
+        }
+    };
+    (
+        score(labelled(&|g| g), n),
+        score(
+            labelled(&|g| derived.behaviors.of_group[g]),
+            derived.behaviors.items.len(),
+        ),
+    )
+}
+
+/// The settings of sweep-and-prune in place of HDBSCAN, as the paper has it.
+pub fn as_published(mut settings: Derivation) -> Derivation {
+    settings.clustering = Clustering::SweepAndPrune;
+    settings
+}
+
+/// Whether all items were followed: the geodesics of a set this small always are.
+pub fn dense(geodesics: &Geodesics) -> bool {
+    matches!(geodesics, Geodesics::All(_))
+}
+
+impl Clips<'_> {
+    /// dump
+    pub fn dump(&self, path: &str) {
+        use std::io::Write;
+        let n = self.distances.len();
+        let mut f = std::io::BufWriter::new(std::fs::File::create(path).unwrap());
+        writeln!(f, "{}", self.set.labels.iter().map(|l| l.to_string()).collect::<Vec<_>>().join(" ")).unwrap();
+        for i in 0..n { writeln!(f, "{}", (0..n).map(|j| format!("{:.6}", self.distances.get(i, j))).collect::<Vec<_>>().join(" ")).unwrap(); }
+        let mut f = std::io::BufWriter::new(std::fs::File::create(format!("{path}.seq")).unwrap());
+        for s in &self.sequences { writeln!(f, "{}", s.iter().map(|v| format!("{v:.5}")).collect::<Vec<_>>().join(" ")).unwrap(); }
+    }
+}

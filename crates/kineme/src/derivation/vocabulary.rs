@@ -1,0 +1,62 @@
+//! From groups of segments to a vocabulary.
+
+use std::sync::Arc;
+
+use super::procedure::Derived;
+use crate::error::Result;
+use crate::motion::Motion;
+use crate::primitive::{Exemplar, Primitive, Provenance, Vocabulary};
+
+/// Exemplars that a primitive keeps at most: those nearest the middle of its group.
+pub const MAX_EXEMPLARS: usize = 50;
+
+impl Derived {
+    /// The vocabulary of the groups found in `motions` (those that the derivation was given); `source` tells the
+    /// BLAKE3 of the file behind a motion, where there is one.
+    ///
+    /// # Errors
+    /// When `motions` are not those that the segments were cut from.
+    pub fn vocabulary(
+        &self,
+        motions: &[Motion],
+        source: &dyn Fn(usize) -> Option<String>,
+    ) -> Result<Vocabulary> {
+        let primitives = self
+            .groups
+            .iter()
+            .map(|group| {
+                let exemplars = group
+                    .segments
+                    .iter()
+                    .take(MAX_EXEMPLARS)
+                    .map(|&s| {
+                        let segment = &self.segments[s];
+                        let motion = &motions[segment.motion];
+                        let rate = motion.rate_hz();
+                        Ok(Exemplar {
+                            motion: motion.slice(segment.frames.clone())?,
+                            provenance: Provenance {
+                                motion: motion.name().into(),
+                                start_secs: segment.frames.start as f64 / rate,
+                                end_secs: segment.frames.end as f64 / rate,
+                                blake3: source(segment.motion),
+                            },
+                        })
+                    })
+                    .collect::<Result<_>>()?;
+                Ok(Primitive {
+                    name: group.name.clone(),
+                    exemplars,
+                    members: group.segments.len(),
+                    coherence: group.coherence,
+                })
+            })
+            .collect::<Result<_>>()?;
+        Vocabulary::new(
+            Arc::clone(motions[0].skeleton()),
+            primitives,
+            self.behaviors.items.clone(),
+            self.transitions.clone(),
+        )
+    }
+}
