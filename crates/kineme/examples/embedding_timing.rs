@@ -1,9 +1,10 @@
-//! Times spatio-temporal Isomap and clustering on made-up segments: `embedding_timing [items]`.
+//! Times spatio-temporal Isomap and clustering on made-up segments, and the graph of as many made-up frames:
+//! `embedding_timing [items]`.
 
 use std::time::Instant;
 
 use kineme::clustering::{Density, SweepAndPrune, hdbscan, sweep_and_prune};
-use kineme::embedding::{EmbedOptions, NeighbourGraph, SpatioTemporal, embed};
+use kineme::embedding::{Continuous, EmbedOptions, Frames, NeighbourGraph, SpatioTemporal, embed};
 use kineme::math::distances::DistanceMatrix;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -70,6 +71,13 @@ fn main() -> kineme::Result<()> {
         "  width {:.4}, stability {:.2}",
         found.width, found.stability
     );
+    let frames: Vec<f64> = (0..len * 30)
+        .map(|v| ((v / 30) as f64 * 0.07 * (1.0 + 0.01 * (v % 30) as f64)).sin())
+        .collect();
+    let frames = Frames::new(&frames, 30, &[len / 2, len - len / 2])?;
+    let graph = NeighbourGraph::continuous(&frames, &Continuous::default())?;
+    lap("continuous graph of 30-dimensional frames");
+    println!("  {} common temporal neighbours", graph.common_edges());
     println!("all: {:.2} s", start.elapsed().as_secs_f64());
     Ok(())
 }
