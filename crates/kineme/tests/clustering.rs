@@ -44,7 +44,10 @@ fn hdbscan_equals_scikit_learn() {
             let truth = expected(row);
             // An item exactly as near to two groups joins either or none, as the order of equal edges has it.
             let torn = torn(&distances, density.min_samples, &truth);
-            assert!(torn.len() <= 4, "{name} {density:?}: {torn:?}");
+            assert!(
+                torn.len() * 16 <= labels.len(),
+                "{name} {density:?}: {torn:?}"
+            );
             let kept = |labels: &[Option<usize>]| -> Vec<Option<usize>> {
                 let sure = (0..labels.len()).filter(|i| !torn.contains(i));
                 renumbered(&sure.map(|i| labels[i]).collect::<Vec<_>>())

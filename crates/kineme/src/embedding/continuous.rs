@@ -3,83 +3,18 @@
 use rayon::prelude::*;
 
 use super::components;
-use super::graph::{Edge, Mark, NeighbourGraph, check_factors, nearest_distances};
+use super::frames::Frames;
+use super::graph::{Edge, Mark, NeighbourGraph};
+use super::segmented::{check_factors, nearest_distances};
 use crate::error::{Error, Result};
-use crate::math::distances::{Neighbours, count_points};
+use crate::math::distances::Neighbours;
 use crate::math::statistics::{median, quantile};
 
+/// Differences of mean squares below this share of the frames' squared extent are rounding: far above what a running
+/// sum gathers between restarts, far below any movement.
+const ROUNDING: f64 = 1e-12;
 /// Window sums are begun afresh after this many frames, so that rounding cannot pile up.
 const RESTART: usize = 256;
-
-/// The frames of one or more recordings, as points.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Frames {
-    /// `values[d * len + i]`: component `d` of frame `i`; loops over frames then run through memory.
-    values: Vec<f64>,
-    dimension: usize,
-    /// Where each recording starts, and the number of all frames.
-    starts: Vec<usize>,
-}
-
-impl Frames {
-    /// Frames, row-major in `dimension` columns, of recordings with these numbers of frames, one after the other.
-    ///
-    /// # Errors
-    /// When numbers are not finite, or the lengths do not add up or one is zero.
-    pub fn new(points: &[f64], dimension: usize, lengths: &[usize]) -> Result<Self> {
-        let len = count_points(points, dimension)?;
-        let sum = lengths
-            .iter()
-            .try_fold(0usize, |sum, &n| sum.checked_add(n));
-        if lengths.contains(&0) || sum != Some(len) || len < 2 {
-            return Err(Error::invalid(format!(
-                "recordings have a frame or more and {len} frames together, at least two, found lengths {lengths:?}"
-            )));
-        }
-        let mut values = vec![0.0; points.len()];
-        for (i, point) in points.chunks_exact(dimension).enumerate() {
-            for (d, &value) in point.iter().enumerate() {
-                values[d * len + i] = value;
-            }
-        }
-        let ends = lengths.iter().scan(0, |end, &n| {
-            *end += n;
-            Some(*end)
-        });
-        Ok(Self {
-            values,
-            dimension,
-            starts: std::iter::once(0).chain(ends).collect(),
-        })
-    }
-
-    /// The number of frames of all recordings.
-    pub fn len(&self) -> usize {
-        self.values.len() / self.dimension
-    }
-
-    /// Never true: frames that exist are two or more.
-    pub fn is_empty(&self) -> bool {
-        self.values.is_empty()
-    }
-
-    /// First frame and frame after the last of each recording.
-    fn recordings(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.starts.windows(2).map(|w| (w[0], w[1]))
-    }
-
-    /// Squared distances of frame `x` to the frames of `range`, written over `row`.
-    fn squares(&self, x: usize, range: std::ops::Range<usize>, row: &mut [f64]) {
-        row.fill(0.0);
-        for column in self.values.chunks_exact(self.len()) {
-            let here = column[x];
-            for (sum, value) in row.iter_mut().zip(&column[range.clone()]) {
-                let difference = value - here;
-                *sum += difference * difference;
-            }
-        }
-    }
-}
 
 /// The continuous form of spatio-temporal Isomap: the K nearest nontrivial neighbours of a frame, under a distance over
 /// the window of frames that follow, are its common temporal neighbours.
@@ -155,7 +90,8 @@ impl NeighbourGraph {
     pub fn continuous(frames: &Frames, options: &Continuous) -> Result<Self> {
         options.check()?;
         let (near, bridges) = search(frames, options)?;
-        let next_in_recording = |x: usize| (!frames.starts.contains(&(x + 1))).then_some(x + 1);
+        let next_in_recording =
+            |x: usize| frames.starts.binary_search(&(x + 1)).err().map(|_| x + 1);
         let mut marks: Vec<Mark> = (0..frames.len())
             .flat_map(|x| near.of(x).iter().map(move |&(y, d)| (x, y, d)))
             .map(|(x, y, distance)| Mark {
@@ -236,7 +172,7 @@ fn search_block(
     let window = options.window.min(len);
     let mut ring = vec![vec![0.0; len]; window + 1];
     let (mut sums, mut next) = (vec![0.0; len], vec![0.0; len]);
-    let mut distances = vec![0.0; len];
+    let mut squares = vec![0.0; len];
     let mut lists = Vec::with_capacity(rows.len());
     let mut bridges: Vec<Option<Edge>> = vec![None; frames.starts.len() - 1];
     for x in rows.clone().rev() {
@@ -265,16 +201,16 @@ fn search_block(
         for (r, (start, stop)) in frames.recordings().enumerate() {
             for y in start..stop {
                 let count = window.min(end - x).min(stop - y);
-                distances[y] = (sums[y].max(0.0) / count as f64).sqrt();
+                squares[y] = sums[y].max(0.0) / count as f64;
             }
             if start >= end {
-                let nearest = (start..stop).min_by(|&a, &b| distances[a].total_cmp(&distances[b]));
-                let edge = nearest.map(|y| Edge::new(x, y, distances[y]));
+                let nearest = (start..stop).min_by(|&a, &b| squares[a].total_cmp(&squares[b]));
+                let edge = nearest.map(|y| Edge::new(x, y, squares[y].sqrt()));
                 let best = bridges[r].map_or(f64::INFINITY, |e| e.length);
                 bridges[r] = edge.filter(|e| e.length < best).or(bridges[r]);
             }
         }
-        lists.push(select(frames, options, &distances, x));
+        lists.push(select(frames, options, &squares, x));
     }
     lists.reverse();
     (lists, bridges.into_iter().flatten().collect())
@@ -301,14 +237,15 @@ fn first_sums(
     }
 }
 
-/// The nontrivial neighbours of frame `x`, from its window distances to all frames.
-fn select(frames: &Frames, options: &Continuous, distances: &[f64], x: usize) -> Vec<(usize, f64)> {
+/// The nontrivial neighbours of frame `x`, from its squared window distances to all frames.
+fn select(frames: &Frames, options: &Continuous, squares: &[f64], x: usize) -> Vec<(usize, f64)> {
     let mut minima: Vec<(usize, usize, f64)> = Vec::new();
     for (r, (start, stop)) in frames.recordings().enumerate() {
         let own = (start..stop).contains(&x);
         let outside = |y: &usize| !own || y.abs_diff(x) > options.exclusion;
-        let found = local_minima(&distances[start..stop]).map(|i| start + i);
-        minima.extend(found.filter(outside).map(|y| (r, y, distances[y])));
+        let found = local_minima(&squares[start..stop], ROUNDING * frames.extent);
+        let places = found.into_iter().map(|i| start + i);
+        minima.extend(places.filter(outside).map(|y| (r, y, squares[y].sqrt())));
     }
     minima.sort_unstable_by(|a, b| a.2.total_cmp(&b.2).then(a.1.cmp(&b.1)));
     let mut taken: Vec<(usize, usize, f64)> = Vec::with_capacity(options.neighbours);
@@ -324,16 +261,27 @@ fn select(frames: &Frames, options: &Continuous, distances: &[f64], x: usize) ->
     taken.into_iter().map(|(_, y, d)| (y, d)).collect()
 }
 
-/// Where a sequence is lower than before and after; an even stretch counts once, at its first place, and the ends are
-/// minima when the sequence rises from them.
-fn local_minima(values: &[f64]) -> impl Iterator<Item = usize> + '_ {
-    (0..values.len()).filter(|&i| {
-        let falls = i == 0 || values[i] < values[i - 1];
-        // Evaluated only where the sequence falls, so an even stretch is walked once.
-        falls
-            && values[i + 1..]
-                .iter()
-                .find(|v| **v != values[i])
-                .is_none_or(|v| *v > values[i])
-    })
+/// Where a sequence turns from falling to rising by more than `tolerance`: an even stretch counts once, at its first
+/// place, and an end counts when the sequence rises from it.
+fn local_minima(values: &[f64], tolerance: f64) -> Vec<usize> {
+    let mut minima = Vec::new();
+    let (mut falling, mut lowest, mut high) = (true, 0, f64::INFINITY);
+    for (i, &value) in values.iter().enumerate() {
+        if falling {
+            if value < values[lowest] - tolerance {
+                lowest = i;
+            } else if value > values[lowest] + tolerance {
+                minima.push(lowest);
+                (falling, high) = (false, value);
+            }
+        } else if value < high - tolerance {
+            (falling, lowest) = (true, i);
+        } else {
+            high = high.max(value);
+        }
+    }
+    if falling {
+        minima.push(lowest);
+    }
+    minima
 }

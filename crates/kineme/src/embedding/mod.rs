@@ -8,16 +8,21 @@
 mod components;
 mod continuous;
 mod eigen;
+mod frames;
 mod geodesics;
 mod graph;
+mod krylov;
 mod out_of_sample;
 mod scaling;
+mod segmented;
 mod space;
 
 pub use components::Disconnected;
-pub use continuous::{Continuous, Frames, nontrivial_neighbours};
+pub use continuous::{Continuous, nontrivial_neighbours};
+pub use frames::Frames;
 pub use geodesics::{Geodesics, LandmarkDistances};
-pub use graph::{Distances, Edge, NeighbourGraph, SpatioTemporal, TemporalRule};
+pub use graph::{Edge, NeighbourGraph};
 pub use out_of_sample::{Links, NewItem, Placement};
 pub use scaling::{Scaling, classical_mds, residual_variance};
+pub use segmented::{Distances, SpatioTemporal, TemporalRule};
 pub use space::{EmbedOptions, Embedding, embed};

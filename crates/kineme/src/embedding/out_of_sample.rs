@@ -1,7 +1,8 @@
 //! Items that come later: linked to the graph by the same rules, placed by the same projection.
 
 use super::geodesics::Geodesics;
-use super::graph::{NeighbourGraph, SpatioTemporal};
+use super::graph::NeighbourGraph;
+use super::segmented::SpatioTemporal;
 use super::space::Embedding;
 use crate::error::{Error, Result};
 use crate::math::distances::k_nearest;

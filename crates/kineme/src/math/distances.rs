@@ -253,17 +253,18 @@ impl Neighbours {
 
 /// The `k` nearest of a row of distances, `without` one item, nearest first, ties in the order of the items.
 pub(crate) fn k_nearest(row: &[f64], k: usize, without: Option<usize>) -> Vec<(usize, f64)> {
-    let mut list: Vec<(usize, f64)> = row
-        .iter()
-        .copied()
-        .enumerate()
-        .filter(|(j, d)| Some(*j) != without && d.is_finite())
-        .collect();
-    if k < list.len() {
-        list.select_nth_unstable_by(k, by_distance);
-        list.truncate(k);
+    let mut list: Vec<(usize, f64)> = Vec::with_capacity(k.min(row.len()));
+    for (j, &d) in row.iter().enumerate() {
+        let farthest = list.last().map_or(f64::INFINITY, |n| n.1);
+        let full = list.len() == k;
+        if Some(j) == without || !d.is_finite() || (full && d >= farthest) || k == 0 {
+            continue;
+        }
+        if full {
+            list.pop();
+        }
+        list.insert(list.partition_point(|n| n.1 <= d), (j, d));
     }
-    list.sort_unstable_by(by_distance);
     list
 }
 
