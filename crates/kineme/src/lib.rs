@@ -1,8 +1,10 @@
 //! Kineme: motor primitives from motion capture.
 
+pub mod alignment;
 pub mod error;
 pub mod math;
 pub mod motion;
+pub mod segmentation;
 pub mod skeleton;
 
 pub use error::{Error, Result};
