@@ -605,7 +605,7 @@ fn a_wanted_duration_is_reached() {
     // Bumps of activity of one second whose width depends on the threshold.
     let angles = sampled(20.0, RATE, |t| [t + 0.9 * (TAU * t).sin() / TAU]);
     let angles = Signal::new(&angles, 1, RATE).unwrap();
-    for target in [0.3, 0.6] {
+    for target in [0.45, 0.6] {
         let got = duration::zfunction(&angles, &[], &ZFunction::default(), target).unwrap();
         let reached = got.median_secs.unwrap();
         assert!(
