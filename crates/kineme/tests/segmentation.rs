@@ -467,7 +467,12 @@ proptest! {
     ) {
         let model = if trend { Model::Trend } else { Model::Mean };
         let penalty = 0.02 * f64::from(strong * strong);
-        let config = ChangePoint { model, penalty, min_secs: min as f64 };
+        let config = ChangePoint {
+            model,
+            penalty,
+            min_secs: min as f64,
+            ..ChangePoint::default()
+        };
         let values = wandering(frames, dims, seed);
         let segment = |values: &[f64]| {
             changepoint::segment(&Signal::new(values, dims, 1.0).unwrap(), &config).unwrap()
@@ -567,6 +572,37 @@ fn change_points_find_corners_and_ignore_shift_scale_and_rotation() {
     assert_eq!(cut(&other), found);
     let still = vec![2.5; 960];
     assert!(cut(&still).is_empty());
+}
+
+#[test]
+fn change_points_stay_when_the_rate_changes() {
+    let path = |t: f64| {
+        let slow = (t * 1.3 % 2.0 - 1.0).abs();
+        [
+            slow,
+            0.6 * (t * 0.7).sin() + f64::from((3.0..5.0).contains(&t)),
+        ]
+    };
+    let mut all = Vec::new();
+    for rate_hz in [24.0, 30.0, 60.0, 120.0] {
+        let values = sampled(12.0, rate_hz, path);
+        let signal = Signal::new(&values, 2, rate_hz).unwrap();
+        let spans = changepoint::segment(&signal, &ChangePoint::default()).unwrap();
+        let cuts = boundaries(&spans, signal.frames());
+        all.push(
+            cuts.iter()
+                .map(|c| *c as f64 / rate_hz)
+                .collect::<Vec<f64>>(),
+        );
+    }
+    assert!(all[0].len() >= 5, "{all:?}");
+    for cuts in &all {
+        assert_eq!(cuts.len(), all[0].len(), "{all:?}");
+        assert!(
+            cuts.iter().zip(&all[0]).all(|(a, b)| (a - b).abs() < 0.1),
+            "{all:?}"
+        );
+    }
 }
 
 #[test]
