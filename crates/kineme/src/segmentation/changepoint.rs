@@ -24,8 +24,14 @@ pub enum Model {
 pub struct ChangePoint {
     /// What a segment is compared with.
     pub model: Model,
-    /// `c` in the penalty `c * dims * ln(frames)` of each segment; 1 to 3 is customary for white noise.
+    /// `c` in the penalty `c * dims * ln(independent frames)` of each segment.
+    ///
+    /// As residuals are measured by the variance of the movement, not of its noise, it is below the 1 to 3 that
+    /// are customary for white noise.
     pub penalty: f64,
+    /// How many frames a second count as independent evidence, hertz; a recording sampled faster than that
+    /// (bodies move below some 6 Hz) is cut as if it were not.
+    pub independent_hz: f64,
     /// The shortest segment, seconds (and at least 2 frames, so that a line is determined).
     pub min_secs: f64,
 }
@@ -34,7 +40,8 @@ impl Default for ChangePoint {
     fn default() -> Self {
         Self {
             model: Model::Trend,
-            penalty: 1.0,
+            penalty: 0.3,
+            independent_hz: 12.0,
             min_secs: 0.2,
         }
     }
@@ -49,10 +56,14 @@ impl Default for ChangePoint {
 /// When a setting is out of range.
 pub fn segment(features: &Signal, config: &ChangePoint) -> Result<Vec<Span>> {
     above_zero("penalty", config.penalty)?;
+    above_zero("independent_hz", config.independent_hz)?;
     at_least("min_secs", config.min_secs, 0.0)?;
     let frames = features.frames();
     let min = features.frames_in(config.min_secs).max(2);
-    let beta = config.penalty * features.dims() as f64 * (frames as f64).ln();
+    // Instead of weighing each frame's residual less, each segment pays as much more.
+    let weight = (config.independent_hz / features.rate_hz()).min(1.0);
+    let independent = (weight * frames as f64).max(2.0);
+    let beta = config.penalty * features.dims() as f64 * independent.ln() / weight;
     let moments = Moments::new(features, config.model);
     let mut spans = Vec::new();
     let mut end = frames;

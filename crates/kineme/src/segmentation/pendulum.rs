@@ -64,7 +64,7 @@ impl Default for Pendulum {
 pub struct Cut {
     /// The frame: the middle, where the distance stays at its maximum for some frames.
     pub frame: usize,
-    /// The same to a fraction of a frame, at the top of the parabola through three distances.
+    /// The same to a fraction of a frame.
     pub time_frames: f64,
     /// The distance from the swing's start, in limb lengths: how much the cut is to be trusted.
     pub swing: f64,
@@ -196,10 +196,11 @@ impl Path {
             if d > highest {
                 best = distances.len() - 1;
             } else if highest >= config.min_swing && d <= highest - fall {
-                let (offset, exact) = middle_of_maximum(&distances, best, 0.1 * fall);
+                let middle = middle_of_maximum(&distances, best, 0.1 * fall);
+                let offset = (middle.round() as usize).clamp(1, distances.len() - 1);
                 cuts.push(Cut {
                     frame: s + offset,
-                    time_frames: s as f64 + exact,
+                    time_frames: s as f64 + middle,
                     swing: highest,
                     limb,
                 });
@@ -216,25 +217,22 @@ impl Path {
     }
 }
 
-/// The middle of the frames around `best` whose distance is within `tolerance` of it, whole and exact.
-fn middle_of_maximum(distances: &[f64], best: usize, tolerance: f64) -> (usize, f64) {
+/// The middle of the stretch around `best` in which the distance stays within `tolerance` of it, in frames.
+///
+/// Its ends lie where straight lines between frames cross that level, so a plateau is cut in its middle and a
+/// round maximum is found to a fraction of a frame. `best` must have lower distances on both sides.
+fn middle_of_maximum(distances: &[f64], best: usize, tolerance: f64) -> f64 {
     let level = distances[best] - tolerance;
-    let high = |d: &&f64| **d >= level;
-    let left = distances[..best].iter().rev().take_while(high).count();
-    let right = distances[best + 1..].iter().take_while(high).count();
-    let middle = (2 * best + right - left) / 2;
-    let y = [
-        distances[middle - 1],
-        distances[middle],
-        distances[middle + 1],
-    ];
-    let bend = y[0] - 2.0 * y[1] + y[2];
-    let offset = if bend < 0.0 {
-        (0.5 * (y[0] - y[2]) / bend).clamp(-0.5, 0.5)
-    } else {
-        0.0
-    };
-    (middle, middle as f64 + offset)
+    let low = |d: &f64| *d < level;
+    let before = distances[..best].iter().rposition(low).unwrap_or(0);
+    let after = distances[best..]
+        .iter()
+        .position(low)
+        .map_or(best, |k| best + k);
+    let share = |outside: f64, inside: f64| (level - outside) / (inside - outside);
+    let rise = before as f64 + share(distances[before], distances[before + 1]);
+    let fall = after as f64 - share(distances[after], distances[after - 1]);
+    0.5 * (rise + fall)
 }
 
 /// The stretches of frames outside of rests: runs of slow frames of at least `rest` frames.
