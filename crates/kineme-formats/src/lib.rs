@@ -6,6 +6,7 @@ pub mod bvh;
 pub mod deepmimic;
 pub mod detect;
 pub mod error;
+pub mod input;
 pub mod output;
 pub mod positions;
 mod text;
