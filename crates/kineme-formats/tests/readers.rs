@@ -55,8 +55,7 @@ fn acclaim_positions_are_those_of_other_libraries() {
     assert!(!by_file.is_empty());
     for (file, rows) in by_file {
         let skeleton = asf::parse(&rows[0]["asf"], &bytes(&data, &rows[0]["asf"])).expect("an ASF");
-        let recording =
-            amc::parse(&file, &bytes(&data, &file), &skeleton, None).expect("a motion");
+        let recording = amc::parse(&file, &bytes(&data, &file), &skeleton, None).expect("a motion");
         let mut frames = BTreeMap::new();
         for row in rows {
             let frame = number(&row, "frame") as usize;
@@ -88,9 +87,13 @@ fn bvh_and_amc_of_one_trial_agree() {
     for pair in oracle["pairs"].as_array().expect("pairs") {
         let file = |key: &str| pair[key].as_str().expect("a name").to_owned();
         let (amc_file, bvh_file) = (file("amc"), file("bvh"));
-        let acclaim = amc::parse(&amc_file, &bytes(&data, &amc_file), &skeleton, None).expect("AMC");
+        let acclaim =
+            amc::parse(&amc_file, &bytes(&data, &amc_file), &skeleton, None).expect("AMC");
         let bvh = bvh::parse(&bvh_file, &bytes(&data, &bvh_file)).expect("BVH");
-        assert_eq!(acclaim.frames() as u64, pair["amc_frames"].as_u64().expect("frames"));
+        assert_eq!(
+            acclaim.frames() as u64,
+            pair["amc_frames"].as_u64().expect("frames")
+        );
         let shift = pair["bvh_frame_minus_amc_index"].as_u64().expect("a shift") as usize;
         for frame in (0..acclaim.frames()).step_by(97) {
             let a = points(&acclaim, frame);
@@ -151,7 +154,11 @@ fn every_file_has_the_joints_frames_and_rate_of_the_table() {
                     assert_eq!(recording.rate_hz(), 120.0, "{inner}");
                 }
                 format => {
-                    assert_eq!(recording.joints().len() as f64, number(fact, "joints"), "{inner}");
+                    assert_eq!(
+                        recording.joints().len() as f64,
+                        number(fact, "joints"),
+                        "{inner}"
+                    );
                     let told = number(fact, "frame_time");
                     assert!((secs - told).abs() <= 1e-15, "{inner}: {secs} {told}");
                     if format == "bvh" {
@@ -181,7 +188,11 @@ fn deepmimic_stands_on_its_feet() {
     assert!(way.x > 0.5 && way.z.abs() < 0.3, "it walked {way:?}");
     for frame in 0..walk.frames() {
         // A knee bends back: the shank never points ahead of the thigh.
-        let (hip, knee, ankle) = (at(frame, "left_hip"), at(frame, "left_knee"), at(frame, "left_ankle"));
+        let (hip, knee, ankle) = (
+            at(frame, "left_hip"),
+            at(frame, "left_knee"),
+            at(frame, "left_ankle"),
+        );
         assert!((knee - hip).cross(&(ankle - knee)).z < 1e-2);
     }
 }

@@ -24,20 +24,34 @@ fn check(recording: &Recording) {
     assert_eq!(again.rate_hz(), recording.rate_hz(), "{name}");
     assert_eq!(again.source().up, recording.source().up, "{name}");
     let (unit, other) = (recording.source().unit_metres, again.source().unit_metres);
-    assert!((unit / other - 1.0).abs() < 1e-12, "{name}: unit {unit} became {other}");
+    assert!(
+        (unit / other - 1.0).abs() < 1e-12,
+        "{name}: unit {unit} became {other}"
+    );
     for frame in (0..recording.frames()).step_by(1 + recording.frames() / 5) {
         let (before, after) = (points(recording, frame), points(&again, frame));
         let largest = before.values().map(|p| p.amax()).fold(0.0, f64::max);
         for (point, place) in &after {
             let far = (place - before[point]).amax();
-            assert!(far <= 1e-9 * largest, "{name} {point} frame {frame}: {far:e} of {largest}");
+            assert!(
+                far <= 1e-9 * largest,
+                "{name} {point} frame {frame}: {far:e} of {largest}"
+            );
         }
         for joint in recording.joints() {
-            assert!(after.contains_key(&joint.name), "{name}: {} is lost", joint.name);
+            assert!(
+                after.contains_key(&joint.name),
+                "{name}: {} is lost",
+                joint.name
+            );
         }
     }
     // Once in our own form a file stays as it is.
-    assert_eq!(String::from_utf8(written(&again)), String::from_utf8(text), "{name}");
+    assert_eq!(
+        String::from_utf8(written(&again)),
+        String::from_utf8(text),
+        "{name}"
+    );
 }
 
 #[test]
@@ -108,17 +122,34 @@ fn figure(order: &str, up: Axis, angles: &[[f64; 3]]) -> Recording {
 #[test]
 fn every_order_survives_gimbal_lock() {
     for order in ORDERS {
-        for middle in [0.0, 90.0, -90.0, 180.0, 90.0 - 1e-7, 89.9999, -90.0 + 1e-6, 1e-7, 180.0 - 1e-6] {
-            let angles = [[10.0, middle, 30.0], [-170.0, middle, 175.0], [0.0, middle, 0.0]];
+        for middle in [
+            0.0,
+            90.0,
+            -90.0,
+            180.0,
+            90.0 - 1e-7,
+            89.9999,
+            -90.0 + 1e-6,
+            1e-7,
+            180.0 - 1e-6,
+        ] {
+            let angles = [
+                [10.0, middle, 30.0],
+                [-170.0, middle, 175.0],
+                [0.0, middle, 0.0],
+            ];
             let recording = figure(order, Axis::Y, &angles);
             let again = bvh::parse("figure", &written(&recording)).expect("our own file");
-            let (Observed::Rotations { rotations: a, .. }, Observed::Rotations { rotations: b, .. }) =
-                (recording.observed(), again.observed())
+            let (
+                Observed::Rotations { rotations: a, .. },
+                Observed::Rotations { rotations: b, .. },
+            ) = (recording.observed(), again.observed())
             else {
                 panic!("rotations");
             };
             for (a, b) in a.iter().zip(b) {
-                let far = (a.to_rotation_matrix().matrix() - b.to_rotation_matrix().matrix()).amax();
+                let far =
+                    (a.to_rotation_matrix().matrix() - b.to_rotation_matrix().matrix()).amax();
                 assert!(far < 1e-11, "{order} {middle}: {far:e}");
             }
         }
@@ -128,7 +159,9 @@ fn every_order_survives_gimbal_lock() {
 /// Channels of a joint that turns steadily do not jump by whole turns or between equivalent triples.
 #[test]
 fn written_angles_do_not_jump() {
-    let turning: Vec<[f64; 3]> = (0..200).map(|f| [4.0 * f64::from(f), 20.0, 3.0 * f64::from(f)]).collect();
+    let turning: Vec<[f64; 3]> = (0..200)
+        .map(|f| [4.0 * f64::from(f), 20.0, 3.0 * f64::from(f)])
+        .collect();
     let text = String::from_utf8(written(&figure("ZXY", Axis::Y, &turning))).expect("text");
     let (_, rows) = text.split_once("Frame Time: ").expect("rows");
     let rows: Vec<Vec<f64>> = rows
@@ -161,7 +194,11 @@ proptest! {
 
 #[test]
 fn a_file_with_z_up_stays_z_up() {
-    check(&figure("ZXY", Axis::Z, &[[0.0, 5.0, 0.0], [3.0, 10.0, -8.0]]));
+    check(&figure(
+        "ZXY",
+        Axis::Z,
+        &[[0.0, 5.0, 0.0], [3.0, 10.0, -8.0]],
+    ));
 }
 
 #[test]
@@ -176,7 +213,11 @@ fn positions_are_written_native_and_in_metres() {
     let near = |text: &str, expected: &[f64]| {
         let (head, row) = text.split_at(header.len());
         assert_eq!(head, header);
-        let found: Vec<f64> = row.trim().split(',').map(|c| c.parse().expect("a number")).collect();
+        let found: Vec<f64> = row
+            .trim()
+            .split(',')
+            .map(|c| c.parse().expect("a number"))
+            .collect();
         assert_eq!(found.len(), expected.len());
         for (a, b) in found.iter().zip(expected) {
             assert!((a - b).abs() < 1e-12, "{found:?} {expected:?}");

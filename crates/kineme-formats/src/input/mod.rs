@@ -113,10 +113,7 @@ impl Location {
             Location::File(path) => {
                 let mut bytes = Vec::new();
                 std::fs::File::open(path)
-                    .and_then(|file| {
-                        file.take(most.unwrap_or(u64::MAX))
-                            .read_to_end(&mut bytes)
-                    })
+                    .and_then(|file| file.take(most.unwrap_or(u64::MAX)).read_to_end(&mut bytes))
                     .map_err(|e| lost(shown, e.to_string(), "a readable file"))?;
                 Ok(bytes)
             }
@@ -154,8 +151,7 @@ impl Inputs {
             if entry.kind == Some(Kind::Amc) && entry.skeleton.is_none() {
                 entry.skeleton.clone_from(&given);
             }
-            if let Some((kind, default)) =
-                entry.kind.and_then(|k| Some((k, k.default_rate_hz()?)))
+            if let Some((kind, default)) = entry.kind.and_then(|k| Some((k, k.default_rate_hz()?)))
             {
                 let said = options.rates.of(kind);
                 if said.is_none() {
@@ -210,7 +206,9 @@ impl Walk {
                 self.lose(&shown, why);
             }
             Err(e) => match packed_path(path) {
-                Some((archive, inner)) => self.archive(archive, &shown_parent(&shown, &inner), &inner),
+                Some((archive, inner)) => {
+                    self.archive(archive, &shown_parent(&shown, &inner), &inner)
+                }
                 None => {
                     let why = lost(&shown, e.to_string(), "a file, a folder or an archive");
                     self.lose(&shown, why);
@@ -275,7 +273,12 @@ impl Walk {
                 Some(rest) => inner.is_empty() || rest.starts_with('/') || rest.is_empty(),
                 None => false,
             };
-            if !below || file.path.split('/').any(|p| p.starts_with('.') || p == "__MACOSX") {
+            if !below
+                || file
+                    .path
+                    .split('/')
+                    .any(|p| p.starts_with('.') || p == "__MACOSX")
+            {
                 continue;
             }
             let name = format!("{shown}/{}", file.path);
@@ -350,7 +353,8 @@ impl Walk {
                 Some((joined(&names[chosen]), place))
             }
             Location::Packed(archive, file) => {
-                let folder_of = |path: &str| path.rsplit_once('/').map_or("", |(f, _)| f).to_owned();
+                let folder_of =
+                    |path: &str| path.rsplit_once('/').map_or("", |(f, _)| f).to_owned();
                 let own = folder_of(&archive.files[*file].path);
                 let beside: Vec<(usize, String)> = archive
                     .skeletons
@@ -390,21 +394,34 @@ impl Walk {
 fn asf_for(amc: &str, beside: &[String]) -> Option<usize> {
     let stem = |name: &str| {
         let name = name.rsplit('/').next().unwrap_or_default();
-        name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_lowercase()
+        name.rsplit_once('.')
+            .map_or(name, |(stem, _)| stem)
+            .to_lowercase()
     };
     let own = stem(amc);
     let stems: Vec<String> = beside.iter().map(|n| stem(n)).collect();
-    let begins = |s: &String| own.strip_prefix(s.as_str()).is_some_and(|r| r.starts_with('_'));
+    let begins = |s: &String| {
+        own.strip_prefix(s.as_str())
+            .is_some_and(|r| r.starts_with('_'))
+    };
     stems
         .iter()
         .position(|s| *s == own)
-        .or_else(|| (0..stems.len()).filter(|&i| begins(&stems[i])).max_by_key(|&i| stems[i].len()))
+        .or_else(|| {
+            (0..stems.len())
+                .filter(|&i| begins(&stems[i]))
+                .max_by_key(|&i| stems[i].len())
+        })
         .or((stems.len() == 1).then_some(0))
 }
 
 /// The ASF files of a folder, sorted.
 fn asf_files(folder: &Path) -> Vec<PathBuf> {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
     let listed = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<PathBuf> = listed
         .map(|e| e.path())
@@ -424,7 +441,11 @@ fn packed_path(path: &Path) -> Option<(&Path, String)> {
 /// A path as messages and names show it: with `/`, without one at the end.
 fn shown(path: &Path) -> String {
     let text = path.to_string_lossy();
-    let text = if cfg!(windows) { text.replace('\\', "/") } else { text.into_owned() };
+    let text = if cfg!(windows) {
+        text.replace('\\', "/")
+    } else {
+        text.into_owned()
+    };
     match text.trim_end_matches('/') {
         "" => text,
         trimmed => trimmed.to_owned(),
@@ -455,7 +476,11 @@ mod tests {
     fn an_amc_finds_its_asf_by_stem_then_prefix_then_being_alone() {
         check("d/02_01.amc", &["02_01.asf", "02.asf"], Some("02_01.asf"));
         check("02_01.amc", &["0.asf", "02.ASF"], Some("02.ASF"));
-        check("HDM_bd_x.AMC", &["HDM.asf", "HDM_bd.asf", "HDM_bk.asf"], Some("HDM_bd.asf"));
+        check(
+            "HDM_bd_x.AMC",
+            &["HDM.asf", "HDM_bd.asf", "HDM_bk.asf"],
+            Some("HDM_bd.asf"),
+        );
         check("hdm_bd_x.amc", &["HDM_BD.asf", "a.asf"], Some("HDM_BD.asf"));
         check("0201.amc", &["02.asf", "03.asf"], None);
         check("walk.amc", &["anyone.asf"], Some("anyone.asf"));

@@ -46,13 +46,14 @@ impl FromStr for InputRates {
                 None => rates.every = Some(hertz(part)?),
                 Some((name, value)) => {
                     let name = name.trim().to_ascii_lowercase();
-                    let kind = RATELESS
-                        .into_iter()
-                        .find(|k| k.name() == name)
-                        .ok_or_else(|| {
-                            let known = RATELESS.map(Kind::name);
-                            Error::unknown_name("format without a time base", &name, known)
-                        })?;
+                    let kind =
+                        RATELESS
+                            .into_iter()
+                            .find(|k| k.name() == name)
+                            .ok_or_else(|| {
+                                let known = RATELESS.map(Kind::name);
+                                Error::unknown_name("format without a time base", &name, known)
+                            })?;
                     rates.by_kind.push((kind, hertz(value)?));
                 }
             }
