@@ -164,7 +164,7 @@ pub fn parse(
             name,
             Place::File,
             format!("{what} is not read by this version"),
-            "BVH, ASF/AMC, DeepMimic, a position table or MSR-Action3D text",
+            "another format",
         ))
     };
     match kind {

@@ -11,7 +11,7 @@ use crate::text::{Blame, shortest};
 /// Metres of the units in use: metre, centimetre, inch, millimetre, and CMU's (0.45 inches to the unit).
 const UNITS: [f64; 5] = [1.0, 0.01, 0.0254, 0.001, 0.0254 / 0.45];
 /// The longest chain of bones below the first branching joint of an adult, metres.
-const REACH: f64 = 1.2;
+const REACH: f64 = 1.15;
 /// Frames looked at to decide.
 const SAMPLES: usize = 24;
 
