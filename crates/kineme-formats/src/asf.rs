@@ -281,7 +281,10 @@ impl<'a> Reader<'a> {
         match &self.open {
             Some(bone) => Err(self.blame.line(
                 at,
-                format!("the end of the bones inside the one begun in line {}", bone.line),
+                format!(
+                    "the end of the bones inside the one begun in line {}",
+                    bone.line
+                ),
                 "`end`",
             )),
             None => Ok(()),

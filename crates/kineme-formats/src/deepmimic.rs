@@ -73,12 +73,24 @@ const JOINTS: [Joint; 13] = [
     joint("right_hip", 0, [0.0, 0.0, 0.084887], None, Turn::Ball),
     joint("right_knee", 3, [0.0, -0.421546, 0.0], None, Turn::Hinge),
     joint("right_ankle", 4, [0.0, -0.40987, 0.0], TOE, Turn::Ball),
-    joint("right_shoulder", 1, [-0.02405, 0.2435, 0.18311], None, Turn::Ball),
+    joint(
+        "right_shoulder",
+        1,
+        [-0.02405, 0.2435, 0.18311],
+        None,
+        Turn::Ball,
+    ),
     joint("right_elbow", 6, [0.0, -0.274788, 0.0], WRIST, Turn::Hinge),
     joint("left_hip", 0, [0.0, 0.0, -0.084887], None, Turn::Ball),
     joint("left_knee", 8, [0.0, -0.421546, 0.0], None, Turn::Hinge),
     joint("left_ankle", 9, [0.0, -0.40987, 0.0], TOE, Turn::Ball),
-    joint("left_shoulder", 1, [-0.02405, 0.2435, -0.18311], None, Turn::Ball),
+    joint(
+        "left_shoulder",
+        1,
+        [-0.02405, 0.2435, -0.18311],
+        None,
+        Turn::Ball,
+    ),
     joint("left_elbow", 11, [0.0, -0.274788, 0.0], WRIST, Turn::Hinge),
 ];
 
@@ -210,6 +222,5 @@ pub fn parse(name: &str, bytes: &[u8]) -> Result<Recording> {
         rotations,
         translations,
     };
-    Recording::new(name, source, joints, frame_secs.recip(), observed)
-        .map_err(|e| blame.refused(e))
+    Recording::new(name, source, joints, frame_secs.recip(), observed).map_err(|e| blame.refused(e))
 }

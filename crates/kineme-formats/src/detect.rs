@@ -64,11 +64,10 @@ impl Kind {
 /// The kind of a file of this name that begins with `head` (at most [`HEAD`] bytes are looked at); `None` for what is
 /// no motion format.
 ///
-/// Content decides where it is unmistakable. Where it is not, the extension says what the file means to be, so that
-/// a damaged motion is an error and not ignored.
+/// An extension that only motions have decides, so that a damaged motion is an error and not ignored; else
+/// the content does.
 pub fn detect(name: &str, head: &[u8]) -> Option<Kind> {
-    let head = &head[..head.len().min(HEAD)];
-    by_content(head).or_else(|| by_extension(name))
+    by_extension(name).or_else(|| by_content(&head[..head.len().min(HEAD)]))
 }
 
 /// The kind that an extension promises, in any case; `None` for extensions shared with other things.
@@ -84,11 +83,14 @@ pub fn by_extension(name: &str) -> Option<Kind> {
     }
 }
 
+/// The kind that the beginning of a file shows.
 fn by_content(head: &[u8]) -> Option<Kind> {
     if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
         return Some(Kind::Zip);
     }
-    // A text may be cut at the head's end, so its last line is not looked at unless it is the only one.
+    if head.starts_with(b"PAR1") {
+        return Some(Kind::Angles);
+    }
     let mut lines = Lines::new(head);
     let (_, first) = lines.next_full()?;
     if first.eq_ignore_ascii_case(b"HIERARCHY") {
@@ -162,7 +164,7 @@ pub fn parse(
             name,
             Place::File,
             format!("{what} is not read by this version"),
-            "BVH, ASF/AMC, DeepMimic, a position table or MSR-Action3D text",
+            "another format",
         ))
     };
     match kind {

@@ -8,6 +8,7 @@ pub mod detect;
 mod document;
 pub mod error;
 pub mod marks;
+pub mod input;
 pub mod output;
 pub mod positions;
 pub mod profile;

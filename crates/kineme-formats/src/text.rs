@@ -54,7 +54,8 @@ impl<'a> Iterator for Lines<'a> {
 
 /// The words of a line: what white space separates.
 pub(crate) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
-    line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty())
+    line.split(u8::is_ascii_whitespace)
+        .filter(|w| !w.is_empty())
 }
 
 /// A finite number.

@@ -11,7 +11,7 @@ use crate::text::{Blame, shortest};
 /// Metres of the units in use: metre, centimetre, inch, millimetre, and CMU's (0.45 inches to the unit).
 const UNITS: [f64; 5] = [1.0, 0.01, 0.0254, 0.001, 0.0254 / 0.45];
 /// The longest chain of bones below the first branching joint of an adult, metres.
-const REACH: f64 = 1.2;
+const REACH: f64 = 1.15;
 /// Frames looked at to decide.
 const SAMPLES: usize = 24;
 
@@ -147,7 +147,9 @@ impl Clip {
         let metres = reach * unit_metres;
         why.insert(
             0,
-            format!("read as {axis} up, {told} m a unit (the longest chain of bones is {metres:.2} m)"),
+            format!(
+                "read as {axis} up, {told} m a unit (the longest chain of bones is {metres:.2} m)"
+            ),
         );
         Decided {
             up,
@@ -182,10 +184,14 @@ impl Clip {
 
     /// What positions of the root mean.
     fn root(&self, up: Axis, children: Reading, body: f64, why: &mut Vec<String>) -> Reading {
-        let open = self.joints.iter().zip(&self.positions).find_map(|(joint, positions)| {
-            let positions = positions.as_ref().filter(|_| joint.parent.is_none())?;
-            (joint.offset.norm() > 1e-3 * body).then_some((joint.offset, positions))
-        });
+        let open = self
+            .joints
+            .iter()
+            .zip(&self.positions)
+            .find_map(|(joint, positions)| {
+                let positions = positions.as_ref().filter(|_| joint.parent.is_none())?;
+                (joint.offset.norm() > 1e-3 * body).then_some((joint.offset, positions))
+            });
         let Some((offset, positions)) = open else {
             return Reading::Replace;
         };
@@ -284,7 +290,11 @@ impl Clip {
 
     fn local(&self, frame: usize, j: usize, root: Reading, children: Reading) -> Vector3<f64> {
         let joint = &self.joints[j];
-        let reading = if joint.parent.is_some() { children } else { root };
+        let reading = if joint.parent.is_some() {
+            children
+        } else {
+            root
+        };
         match &self.positions[j] {
             Some(positions) => positions.place(frame, &joint.offset, reading),
             None => joint.offset,

@@ -25,7 +25,7 @@
 //! median frame, one of them clearly (by half), the other at least not against it; else y, the custom.
 //! The unit is the one among metre, centimetre, inch, millimetre and 0.0254/0.45 m (the
 //! CMU skeletons' own) that brings the longest chain of bones below the first branching joint
-//! nearest 1.2 m in ratio: the reach of a leg or a trunk and arm of an adult.
+//! nearest 1.15 m in ratio: the reach of a leg or a trunk and arm of an adult.
 
 mod interpret;
 mod parse;

@@ -322,7 +322,10 @@ impl<'a> Hierarchy<'a> {
             .copied()
             .filter(|c| matches!(c, Channel::Rotation(_)))
             .collect();
-        let repeated = [Axis::X, Axis::Y, Axis::Z].map(positions).iter().any(|&n| n > 1)
+        let repeated = [Axis::X, Axis::Y, Axis::Z]
+            .map(positions)
+            .iter()
+            .any(|&n| n > 1)
             || turns.windows(2).any(|pair| pair[0] == pair[1])
             || turns.len() > 3;
         if repeated {

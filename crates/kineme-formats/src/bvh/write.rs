@@ -26,7 +26,7 @@ const DEEPEST: usize = 60;
 /// with `OFFSET` zero. A tip is written as an end site unless a child starts there.
 ///
 /// # Errors
-/// When the recording holds bare positions, or `out` cannot be written.
+/// When the recording holds bare positions or lengths that overflow in the file's unit, or `out` cannot be written.
 pub fn write(recording: &Recording, out: &mut dyn Write) -> Result<()> {
     let Some(clip) = written_clip(recording) else {
         return Err(FormatError::new(
@@ -36,6 +36,20 @@ pub fn write(recording: &Recording, out: &mut dyn Write) -> Result<()> {
             "rotations, which BVH holds (retarget to a body first)",
         ));
     };
+    let finite = |v: &Vector3<f64>| v.iter().all(|c| c.is_finite());
+    let positions = clip.positions.iter().flatten().flat_map(|p| &p.values);
+    let rest = clip
+        .joints
+        .iter()
+        .flat_map(|j| [Some(&j.offset), j.site.as_ref()]);
+    if !positions.chain(rest.flatten()).all(finite) {
+        return Err(FormatError::new(
+            recording.name(),
+            Place::File,
+            "lengths too large for the file's unit",
+            "finite numbers",
+        ));
+    }
     let mut text = hierarchy(&clip);
     let _ = write!(
         text,
@@ -249,7 +263,13 @@ fn plain(name: &str) -> String {
     let name: String = name
         .trim()
         .chars()
-        .map(|c| if c.is_control() || matches!(c, '{' | '}') { '_' } else { c })
+        .map(|c| {
+            if c.is_control() || matches!(c, '{' | '}') {
+                '_'
+            } else {
+                c
+            }
+        })
         .collect();
     if name.is_empty() { "_".into() } else { name }
 }
@@ -284,22 +304,36 @@ fn frame_time(rate_hz: f64) -> String {
 /// Intrinsic angles (radians) of a rotation: exact at gimbal lock too, and of the equivalent triples the one nearest
 /// the previous frame's.
 fn angles(order: &EulerOrder, q: &UnitQuaternion<f64>, previous: &[f64; 3]) -> [f64; 3] {
-    let [i, j, k] = order.0;
-    let first = order.angles(q)[0];
-    // Near the lock the first angle is ill-determined, so the others are taken from what it leaves.
-    let rest = (i.turn(-first) * q).to_rotation_matrix();
-    // rest = R_j R_k: its column k is that of R_j, its row j that of R_k. A turn about `a` takes `b`
-    // toward the third axis when the three follow each other, else away from it.
+    let [first_axis, ..] = order.0;
+    let [i, j, k] = order.0.map(Axis::index);
+    let proper = i == k;
+    // A turn about `a` takes `b` toward the third axis when the three follow each other, else away from it.
     let third = |a: usize, b: usize| 3 - a - b;
     let sign = |a: usize, b: usize| if (b + 3 - a) % 3 == 1 { 1.0 } else { -1.0 };
-    let (j, k) = (j.index(), k.index());
+    let m = q.to_rotation_matrix();
+    let (sine, cosine) = if proper {
+        (m[(j, i)], -sign(i, j) * m[(third(i, j), i)])
+    } else {
+        (-sign(i, j) * m[(j, k)], m[(k, k)])
+    };
+    // At the lock the first angle is free; the others are taken from what it leaves, so nothing is lost.
+    let first = if sine.hypot(cosine) > 1e-13 {
+        sine.atan2(cosine)
+    } else {
+        previous[0]
+    };
+    let rest = (first_axis.turn(-first) * q).to_rotation_matrix();
+    // rest = R_j R_k: its column k is that of R_j, its row j that of R_k.
     let middle = (sign(j, k) * rest[(third(j, k), k)]).atan2(rest[(k, k)]);
     let last = (-sign(k, j) * rest[(j, third(k, j))]).atan2(rest[(j, j)]);
-    let proper = i.index() == k;
     let candidates = [
         [first, middle, last],
         if proper {
-            [first + std::f64::consts::PI, -middle, last + std::f64::consts::PI]
+            [
+                first + std::f64::consts::PI,
+                -middle,
+                last + std::f64::consts::PI,
+            ]
         } else {
             [
                 first + std::f64::consts::PI,
@@ -309,9 +343,7 @@ fn angles(order: &EulerOrder, q: &UnitQuaternion<f64>, previous: &[f64; 3]) -> [
         },
     ]
     .map(|triple| std::array::from_fn(|a| previous[a] + wrap(triple[a] - previous[a])));
-    let far = |triple: &[f64; 3]| -> f64 {
-        (0..3).map(|a| (triple[a] - previous[a]).abs()).sum()
-    };
+    let far = |triple: &[f64; 3]| -> f64 { (0..3).map(|a| (triple[a] - previous[a]).abs()).sum() };
     if far(&candidates[1]) < far(&candidates[0]) {
         candidates[1]
     } else {

@@ -24,7 +24,10 @@ pub fn data() -> Option<PathBuf> {
 pub fn oracle(data: &Path, name: &str) -> Vec<BTreeMap<String, String>> {
     let path = data.join("../oracles").join(name);
     let mut reader = csv::Reader::from_path(&path).expect("an oracle table");
-    reader.deserialize().map(|row| row.expect("a row")).collect()
+    reader
+        .deserialize()
+        .map(|row| row.expect("a row"))
+        .collect()
 }
 
 /// The bytes of `archive/inner/file` as the oracles name it.
@@ -47,7 +50,9 @@ pub fn bytes(data: &Path, file: &str) -> Vec<u8> {
 
 /// A number of a table's cell.
 pub fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap_or_else(|_| panic!("{column} {:?}", row[column]))
+    row[column]
+        .parse()
+        .unwrap_or_else(|_| panic!("{column} {:?}", row[column]))
 }
 
 /// Points of a frame in the file's own axes and units, by name: joints, and tips as `<joint>_End`.
