@@ -1,6 +1,7 @@
 //! Floor 1: recordings as observed, motions of a body, Cartesian tracks.
 
 mod body_motion;
+mod from_motion;
 mod recording;
 mod track;
 
