@@ -95,7 +95,7 @@ impl EulerOrder {
         self.0[0].turn(angles[0]) * self.0[1].turn(angles[1]) * self.0[2].turn(angles[2])
     }
 
-    /// The three intrinsic angles (radians) of a rotation; at gimbal lock the third is zero.
+    /// The three intrinsic angles (radians) of a rotation; at gimbal lock the third is zero but for rounding.
     ///
     /// Tait-Bryan orders put the middle angle in [-pi/2, pi/2], proper Euler orders in [0, pi].
     pub fn angles(&self, q: &UnitQuaternion<f64>) -> [f64; 3] {
@@ -105,29 +105,33 @@ impl EulerOrder {
         // The axis that the order leaves out, for proper orders.
         let last = if proper { 3 - i - j } else { k };
         let sign = if (j + 3 - i) % 3 == 1 { 1.0 } else { -1.0 };
-        if proper {
+        let (first, middle) = if proper {
             let sine = m[(i, j)].hypot(m[(i, last)]);
             let middle = sine.atan2(m[(i, i)]);
-            if sine > 1e-9 {
-                let first = m[(j, i)].atan2(-sign * m[(last, i)]);
-                let third = m[(i, j)].atan2(sign * m[(i, last)]);
-                [first, middle, third]
+            if sine > LOCKED {
+                (m[(j, i)].atan2(-sign * m[(last, i)]), middle)
             } else {
-                [(sign * m[(last, j)]).atan2(m[(j, j)]), middle, 0.0]
+                ((sign * m[(last, j)]).atan2(m[(j, j)]), middle)
             }
         } else {
             let cosine = m[(i, i)].hypot(m[(i, j)]);
             let middle = (sign * m[(i, k)]).atan2(cosine);
-            if cosine > 1e-9 {
-                let first = (-sign * m[(j, k)]).atan2(m[(k, k)]);
-                let third = (-sign * m[(i, j)]).atan2(m[(i, i)]);
-                [first, middle, third]
+            if cosine > LOCKED {
+                ((-sign * m[(j, k)]).atan2(m[(k, k)]), middle)
             } else {
-                [(sign * m[(k, j)]).atan2(m[(j, j)]), middle, 0.0]
+                ((sign * m[(k, j)]).atan2(m[(j, j)]), middle)
             }
-        }
+        };
+        // What is left over is a turn about the third axis: near gimbal lock this keeps the product exact,
+        // where reading the third angle off the matrix would not.
+        let rest = (self.0[0].turn(first) * self.0[1].turn(middle)).inverse() * q;
+        let third = twist_angle(&rest, &self.0[2].unit());
+        [first, middle, third]
     }
 }
+
+/// Sine (cosine) of the middle angle below which an Euler order counts as locked.
+const LOCKED: f64 = 1e-9;
 
 /// The angle (radians, in (-pi, pi]) of the part of `q` that turns about `axis`: `q = swing * twist`.
 pub fn twist_angle(q: &UnitQuaternion<f64>, axis: &Unit<Vector3<f64>>) -> f64 {
@@ -145,17 +149,24 @@ pub fn wrap(angle: f64) -> f64 {
     }
 }
 
-/// The smallest rotation that brings direction `from` to direction `to`; about any normal when they are opposite.
+/// The smallest rotation that brings direction `from` to direction `to`; about any normal when they are opposite,
+/// none when one of them has no length.
 pub fn shortest(from: &Vector3<f64>, to: &Vector3<f64>) -> UnitQuaternion<f64> {
-    UnitQuaternion::rotation_between(from, to).unwrap_or_else(|| {
-        let helper = if from.x.abs() < 0.9 * from.norm() {
-            Vector3::x()
-        } else {
-            Vector3::y()
-        };
-        let axis = Unit::new_normalize(from.cross(&helper));
-        UnitQuaternion::from_axis_angle(&axis, std::f64::consts::PI)
-    })
+    let (Some(from), Some(to)) = (from.try_normalize(0.0), to.try_normalize(0.0)) else {
+        return UnitQuaternion::identity();
+    };
+    // Half-way direction: exact for tiny turns, where an arc cosine keeps only eight digits.
+    if let Some(half) = (from + to).try_normalize(1e-9) {
+        let q = nalgebra::Quaternion::from_parts(from.dot(&half), from.cross(&half));
+        return UnitQuaternion::new_normalize(q);
+    }
+    let helper = if from.x.abs() < 0.9 {
+        Vector3::x()
+    } else {
+        Vector3::y()
+    };
+    let axis = Unit::new_normalize(from.cross(&helper));
+    UnitQuaternion::from_axis_angle(&axis, std::f64::consts::PI)
 }
 
 /// The right-handed frame whose z axis is `z` and whose y axis lies as near `y` as it can; `None` when they are parallel or tiny.

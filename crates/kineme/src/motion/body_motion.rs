@@ -153,7 +153,13 @@ impl Motion {
         let mut poses = Vec::with_capacity(count * dof);
         let mut roots = Vec::with_capacity(count);
         for i in 0..count {
-            let place = i as f64 / rate_hz * self.rate_hz;
+            // Rounding must not mix a neighbour into a frame that is hit exactly.
+            let place = i as f64 * self.rate_hz / rate_hz;
+            let place = if (place - place.round()).abs() < 1e-9 {
+                place.round()
+            } else {
+                place
+            };
             let a = (place.floor() as usize).min(last);
             let b = (a + 1).min(last);
             let s = place - a as f64;

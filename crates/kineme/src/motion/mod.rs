@@ -2,6 +2,7 @@
 
 mod activity;
 mod body_motion;
+mod from_motion;
 mod recording;
 mod track;
 

@@ -213,6 +213,25 @@ impl Recording {
         })
     }
 
+    /// A recording of parts known to agree, such as those of a valid motion.
+    pub(super) fn of_parts(
+        name: &str,
+        source: Source,
+        joints: Vec<RecordedJoint>,
+        rate_hz: f64,
+        frames: usize,
+        observed: Observed,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            source,
+            joints,
+            rate_hz,
+            frames,
+            observed,
+        }
+    }
+
     /// The recording's name, as `info` prints it: `set.zip/inner/walk.bvh`.
     pub fn name(&self) -> &str {
         &self.name
@@ -258,37 +277,47 @@ impl Recording {
     /// # Panics
     /// When `frame` is not below [`Self::frames`].
     pub fn placements(&self, frame: usize) -> Vec<Placement> {
+        let mut placed = Vec::with_capacity(self.joints.len());
+        self.place(frame, &mut placed);
+        placed
+    }
+
+    /// As [`Self::placements`], written over `placed`, whose memory serves frame after frame.
+    ///
+    /// # Panics
+    /// When `frame` is not below [`Self::frames`].
+    pub fn place(&self, frame: usize, placed: &mut Vec<Placement>) {
         assert!(frame < self.frames, "frame {frame} of {}", self.frames);
         let n = self.joints.len();
+        placed.clear();
         match &self.observed {
-            Observed::Positions(positions) => positions[frame * n..(frame + 1) * n]
-                .iter()
-                .map(|&position| Placement {
-                    position,
-                    rotation: None,
-                })
-                .collect(),
+            Observed::Positions(positions) => placed.extend(
+                positions[frame * n..(frame + 1) * n]
+                    .iter()
+                    .map(|&position| Placement {
+                        position,
+                        rotation: None,
+                    }),
+            ),
             Observed::Rotations {
                 rotations,
                 translations,
             } => {
-                let mut world: Vec<(Vector3<f64>, UnitQuaternion<f64>)> = Vec::with_capacity(n);
                 for (j, joint) in self.joints.iter().enumerate() {
                     let local = translations[j].as_ref().map_or(joint.offset, |t| t[frame]);
                     let turn = rotations[frame * n + j];
-                    let placed = match joint.parent {
-                        Some(p) => (world[p].0 + world[p].1 * local, world[p].1 * turn),
+                    let parent = joint
+                        .parent
+                        .and_then(|p| placed[p].position.zip(placed[p].rotation));
+                    let (position, rotation) = match parent {
+                        Some((p, q)) => (p + q * local, q * turn),
                         None => (local, turn),
                     };
-                    world.push(placed);
+                    placed.push(Placement {
+                        position: Some(position),
+                        rotation: Some(rotation),
+                    });
                 }
-                world
-                    .into_iter()
-                    .map(|(p, q)| Placement {
-                        position: Some(p),
-                        rotation: Some(q),
-                    })
-                    .collect()
             }
         }
     }

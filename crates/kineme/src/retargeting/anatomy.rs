@@ -7,10 +7,14 @@ use std::collections::BTreeMap;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::landmarks::Landmarks;
-use super::limb::{LimbSample, limb_frames};
+use super::limb::{LimbKind, LimbSample, limb_frames};
+use super::orientation::{Resting, oriented};
 use crate::error::{Error, Result};
-use crate::math::rotation::{frame_z_y, shortest, twist_angle};
+use crate::math::rotation::{frame_z_y, shortest, twist_angle, wrap};
 use crate::skeleton::{JointKind, Role, Skeleton};
+
+/// Length of thigh and shank over that of the trunk from hips to suprasternale (de Leva 1996, men).
+const TRUNKS_A_LEG: f64 = (0.4222 + 0.4340) / 0.5319;
 
 type Turns = Vec<UnitQuaternion<f64>>;
 
@@ -21,7 +25,8 @@ pub struct Anatomy {
     pub parts: BTreeMap<Role, Turns>,
     /// The middle of the hips, metres, one a frame.
     pub hips: Vec<Vector3<f64>>,
-    /// Length of thigh and shank together (else of the trunk), metres, median over the frames.
+    /// Length of thigh and shank together, metres, median over the frames; where legs were not observed, what is usual
+    /// for a trunk of that length.
     pub scale: f64,
 }
 
@@ -119,25 +124,36 @@ impl Anatomy {
         }
         parts.insert(Role::Hips, pelvis);
         parts.insert(Role::Chest, thorax);
-        let scale = leg_length(marks)
-            .unwrap_or_else(|| median_length(neck.iter().zip(&hips).map(|(a, b)| (a - b).norm())));
+        let scale = leg_length(marks).unwrap_or_else(|| {
+            TRUNKS_A_LEG * median(neck.iter().zip(&hips).map(|(a, b)| (a - b).norm()))
+        });
         Ok(Self { parts, hips, scale })
     }
 
     /// The heading at each frame: the turn of the pelvis about the vertical, unwrapped; held where the body is upside down.
     pub fn headings(&self) -> Vec<f64> {
-        let z = Vector3::z_axis();
-        let mut before = 0.0;
-        self.parts[&Role::Hips]
-            .iter()
-            .map(|q| {
-                if q.w.hypot(q.k) > 0.1 {
-                    before += crate::math::rotation::wrap(twist_angle(q, &z) - before);
-                }
-                before
-            })
-            .collect()
+        headings(&self.parts[&Role::Hips])
     }
+}
+
+/// The headings of a part: its turn about the vertical (swing and twist), unwrapped from frame to frame.
+///
+/// Upside down there is no such turn; near there the heading follows more and more slowly, so that it does not jump.
+pub fn headings(turns: &[UnitQuaternion<f64>]) -> Vec<f64> {
+    let z = Vector3::z_axis();
+    // From the cosine of half the tilt, which is 1 upright and 0 upside down.
+    let clear = |q: &UnitQuaternion<f64>| ((q.w.hypot(q.k) - 0.1) / 0.2).clamp(0.0, 1.0);
+    let mut before = turns
+        .iter()
+        .find(|q| clear(q) > 0.0)
+        .map_or(0.0, |q| twist_angle(q, &z));
+    turns
+        .iter()
+        .map(|q| {
+            before += clear(q) * wrap(twist_angle(q, &z) - before);
+            before
+        })
+        .collect()
 }
 
 /// A frame whose y axis is exactly `y` and whose z axis lies as near `z` as it can.
@@ -169,7 +185,7 @@ fn spine_point<'a>(
             let trunk = n - h;
             (p - h).dot(&trunk) / trunk.norm_squared().max(1e-12)
         });
-        median_length(shares)
+        median(shares)
     };
     [Role::Spine, Role::Chest, Role::UpperChest]
         .into_iter()
@@ -180,62 +196,21 @@ fn spine_point<'a>(
         .map(|(path, _)| path)
 }
 
-fn median_length(values: impl Iterator<Item = f64>) -> f64 {
+fn median(values: impl Iterator<Item = f64>) -> f64 {
     crate::math::statistics::median(&values.collect::<Vec<_>>()).unwrap_or(1.0)
 }
 
+/// Thigh and shank of the left leg, else of the right.
 fn leg_length(marks: &Landmarks) -> Option<f64> {
     let bone = |a: Role, b: Role| {
         let (a, b) = (marks.path(a)?, marks.path(b)?);
-        Some(median_length(a.iter().zip(b).map(|(a, b)| (a - b).norm())))
+        Some(median(a.iter().zip(b).map(|(a, b)| (a - b).norm())))
     };
-    let length =
-        bone(Role::LeftUpperLeg, Role::LeftLowerLeg)? + bone(Role::LeftLowerLeg, Role::LeftFoot)?;
-    (length > 1e-6).then_some(length)
-}
-
-/// The source's zero pose, if it is a standing person: then it says how each part's own axes lie in the anatomy.
-struct Resting<'a> {
-    marks: &'a Landmarks,
-    frame: UnitQuaternion<f64>,
-}
-
-impl<'a> Resting<'a> {
-    fn of(marks: &'a Landmarks) -> Option<Self> {
-        let at = |r: Role| marks.rest.get(&r).copied();
-        let (left, right) = (at(Role::LeftUpperLeg)?, at(Role::RightUpperLeg)?);
-        let hips = 0.5 * (left + right);
-        let shoulders = 0.5 * (at(Role::LeftUpperArm)? + at(Role::RightUpperArm)?);
-        let feet = 0.5 * (at(Role::LeftFoot)? + at(Role::RightFoot)?);
-        let upright = |v: Vector3<f64>| v.try_normalize(1e-9).is_some_and(|v| v.z > 0.8);
-        let frame = frame_z_y(&Vector3::z(), &(left - right))?;
-        (upright(shoulders - hips) && upright(hips - feet)).then_some(Self { marks, frame })
-    }
-
-    /// How a bone from `from` to `to` lies at rest: the neutral hanging bone swung the shortest way.
-    fn bone(&self, from: Role, to: Role) -> Option<UnitQuaternion<f64>> {
-        let direction = self.marks.rest.get(&to)? - self.marks.rest.get(&from)?;
-        let local = (self.frame.inverse() * direction).try_normalize(1e-9)?;
-        Some(self.frame * shortest(&-Vector3::z(), &local))
-    }
-}
-
-/// The constant turn from a part's own axes to the anatomy that agrees best with `estimate` over the recording.
-fn calibration(
-    own: &[UnitQuaternion<f64>],
-    estimate: &[UnitQuaternion<f64>],
-) -> UnitQuaternion<f64> {
-    // Chordal mean (Markley et al. 2007): the main eigenvector of the sum of q q'.
-    let mut sum = nalgebra::Matrix4::<f64>::zeros();
-    let step = (own.len() / 512).max(1);
-    for (a, b) in own.iter().zip(estimate).step_by(step) {
-        let q = (a.inverse() * b).into_inner().coords;
-        sum += q * q.transpose();
-    }
-    let eigen = sum.symmetric_eigen();
-    let best = eigen.eigenvalues.imax();
-    let v = eigen.eigenvectors.column(best);
-    UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(v[3], v[0], v[1], v[2]))
+    LIMBS
+        .iter()
+        .filter(|l| !l.arm)
+        .find_map(|l| Some(bone(l.upper, l.lower)? + bone(l.lower, l.end)?))
+        .filter(|length| *length > 1e-6)
 }
 
 /// The head: from the source's orientation where it has one, else from where the head stands over the neck.
@@ -245,9 +220,13 @@ fn head(
     neck: &[Vector3<f64>],
     resting: Option<&Resting>,
 ) -> Option<Turns> {
-    if let Some(own) = marks.rotations.get(&Role::Head) {
-        let turn = resting.map_or_else(|| calibration(own, thorax), |r| r.frame);
-        return Some(own.iter().map(|q| q * turn).collect());
+    // Skeletons without a head of its own (DeepMimic) turn it with the neck.
+    let own = [Role::Head, Role::Neck]
+        .iter()
+        .find(|r| marks.positions.contains_key(r))
+        .and_then(|r| marks.rotations.get(r));
+    if let Some(own) = own {
+        return Some(oriented(own, resting.map(|r| r.frame), thorax));
     }
     let head = marks.path(Role::Head)?;
     Some(frames(marks.frames, |f| {
@@ -269,7 +248,10 @@ fn limb_parts(
         return;
     };
     let end = marks.path(limb.end);
-    // The bone in the source's own axes does not move: its median direction says where it lies.
+    let toes = end
+        .zip(marks.path(limb.tip))
+        .filter(|_| !limb.arm && marks.rotations.is_empty());
+    // The bone in the source's own axes does not move: its mean direction says where it lies.
     let own = marks.rotations.get(&limb.upper);
     let to_bone = own.and_then(|own| {
         let sum: Vector3<f64> = own
@@ -291,24 +273,25 @@ fn limb_parts(
                 carrier: carrier[f],
                 upper,
                 lower,
+                toes: toes.and_then(|(end, tip)| (tip[f] - end[f]).try_normalize(1e-6)),
                 source: own.zip(to_bone).map(|(own, turn)| own[f] * turn),
             }
         })
         .collect();
-    let reference = body
-        .joints_of(limb.upper)
-        .first()
-        .map(|&j| match &body.joints()[j].kind {
-            JointKind::Ball { reference, .. } => *reference,
+    let joint = body.joints_of(limb.upper).first().copied();
+    let kind = LimbKind {
+        bends_forward: limb.arm,
+        reference: match joint.map(|j| &body.joints()[j].kind) {
+            Some(JointKind::Ball { reference, .. }) => *reference,
             _ => UnitQuaternion::identity(),
-        })
-        .unwrap_or_default();
-    // At rest the source's frame is the identity, so its bone frame is `to_bone`, the anatomy is the resting bone.
-    let rest_twist = to_bone.and_then(|turn| {
-        let rest = resting?.bone(limb.upper, limb.lower)?;
-        Some(twist_angle(&(turn.inverse() * rest), &Vector3::z_axis()))
-    });
-    let found = limb_frames(&samples, limb.arm, &reference, rest_twist);
+        },
+        // At rest the source's frame is the identity, so its bone frame is `to_bone`, the anatomy is the resting bone.
+        resting: to_bone.and_then(|turn| {
+            let rest = resting?.bone(limb.upper, limb.lower)?;
+            Some(twist_angle(&(turn.inverse() * rest), &Vector3::z_axis()))
+        }),
+    };
+    let found = limb_frames(&samples, &kind, marks.rate_hz);
     if end.is_some() {
         if let Some(turns) = end_part(marks, body, limb, &found.lower, resting) {
             parts.insert(limb.end, turns);
@@ -330,7 +313,7 @@ fn end_part(
         -Vector3::z()
     } else {
         let joint = *body.joints_of(limb.end).first()?;
-        body.joints()[joint].tip.normalize()
+        body.joints()[joint].tip.try_normalize(1e-9)?
     };
     let pointed = marks
         .path(limb.end)
@@ -344,13 +327,11 @@ fn end_part(
     let Some(own) = marks.rotations.get(&limb.end) else {
         return pointed;
     };
-    let turn = match (resting, &pointed) {
-        (Some(r), _) if limb.arm => r
+    let rest = resting.and_then(|r| match limb.arm {
+        true => r
             .bone(limb.end, limb.tip)
-            .or_else(|| r.bone(limb.lower, limb.end))?,
-        (Some(r), _) => r.frame,
-        (None, Some(p)) => calibration(own, p),
-        (None, None) => calibration(own, lower),
-    };
-    Some(own.iter().map(|q| q * turn).collect())
+            .or_else(|| r.bone(limb.lower, limb.end)),
+        false => Some(r.frame),
+    });
+    Some(oriented(own, rest, pointed.as_deref().unwrap_or(lower)))
 }

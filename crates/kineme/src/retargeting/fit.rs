@@ -7,11 +7,12 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::anatomy::Anatomy;
 use super::landmarks::Landmarks;
+use super::own::own_motion;
 use super::profile::{Profile, RoleMap};
 use crate::error::Result;
 use crate::math::rotation::{exp, log};
 use crate::motion::{Motion, Recording};
-use crate::skeleton::{Role, Root, Skeleton};
+use crate::skeleton::{Role, Root, Skeleton, adonis, ares};
 
 /// A motion of a body with what had to be left open.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +36,17 @@ pub fn retarget(
     body: &Arc<Skeleton>,
     profile: Option<&Profile>,
 ) -> Result<Retargeted> {
+    if profile.is_none()
+        && let Some(motion) = written_by_us(recording, body)
+    {
+        let (motion, unobserved) = motion?;
+        return Ok(Retargeted {
+            motion,
+            profile: OURS.into(),
+            unobserved,
+            filled: 0.0,
+        });
+    }
     let names: Vec<&str> = recording.joints().iter().map(|j| j.name.as_str()).collect();
     let map = match profile {
         Some(p) => p.matched(&names),
@@ -51,12 +63,34 @@ pub fn retarget(
     })
 }
 
+/// The name of the profile under which recordings of our own bodies are reported.
+const OURS: &str = "kineme";
+
+/// The motion of a recording that was made of one of our bodies, brought to `body`; `None` for any other recording.
+fn written_by_us(
+    recording: &Recording,
+    body: &Arc<Skeleton>,
+) -> Option<Result<(Motion, Vec<Role>)>> {
+    if let Some(motion) = own_motion(recording, body) {
+        return Some(motion.map(|m| (m, Vec::new())));
+    }
+    [ares, adonis].into_iter().find_map(|built_in| {
+        let other = Arc::new(built_in().ok()?);
+        let motion = own_motion(recording, &other)?;
+        Some(motion.and_then(|m| transfer(&m, body)))
+    })
+}
+
 /// The same movement on another body, joint by joint through the roles; also the roles that the first body lacks.
+/// On the same body it is the same motion.
 ///
 /// # Errors
 /// When the motion cannot be expressed in finite numbers.
 pub fn transfer(motion: &Motion, body: &Arc<Skeleton>) -> Result<(Motion, Vec<Role>)> {
     let from = motion.skeleton();
+    if from == body {
+        return Ok((motion.clone(), Vec::new()));
+    }
     // At the neutral pose the frames of all bodies agree, so a joint's world orientation is its part's anatomical frame.
     let carriers: BTreeMap<Role, usize> = Role::ALL
         .iter()

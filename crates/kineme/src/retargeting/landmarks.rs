@@ -13,6 +13,8 @@ use crate::skeleton::Role;
 pub struct Landmarks {
     /// Frames.
     pub frames: usize,
+    /// Frames a second.
+    pub rate_hz: f64,
     /// World position of each role's joint, metres, one a frame.
     pub positions: BTreeMap<Role, Vec<Vector3<f64>>>,
     /// World orientation of each role's joint in the source's own convention.
@@ -33,13 +35,38 @@ const TIPS: [(Role, Role); 6] = [
     (Role::RightToes, Role::RightFoot),
 ];
 
+/// The landmark that carries another: gaps are filled in the vector from the one to the other, so that a hidden hand
+/// goes along with its arm. Carriers come first.
+const CARRIED: [(Role, Role); 20] = [
+    (Role::RightUpperLeg, Role::LeftUpperLeg),
+    (Role::Spine, Role::LeftUpperLeg),
+    (Role::Chest, Role::LeftUpperLeg),
+    (Role::UpperChest, Role::LeftUpperLeg),
+    (Role::Neck, Role::LeftUpperLeg),
+    (Role::LeftUpperArm, Role::LeftUpperLeg),
+    (Role::RightUpperArm, Role::LeftUpperLeg),
+    (Role::Head, Role::LeftUpperArm),
+    (Role::LeftLowerArm, Role::LeftUpperArm),
+    (Role::LeftHand, Role::LeftLowerArm),
+    (Role::LeftFingers, Role::LeftHand),
+    (Role::RightLowerArm, Role::RightUpperArm),
+    (Role::RightHand, Role::RightLowerArm),
+    (Role::RightFingers, Role::RightHand),
+    (Role::LeftLowerLeg, Role::LeftUpperLeg),
+    (Role::LeftFoot, Role::LeftLowerLeg),
+    (Role::LeftToes, Role::LeftFoot),
+    (Role::RightLowerLeg, Role::RightUpperLeg),
+    (Role::RightFoot, Role::RightLowerLeg),
+    (Role::RightToes, Role::RightFoot),
+];
+
 impl Landmarks {
-    /// The landmarks of a recording whose joints play these roles. Points missing in some frames are filled linearly
-    /// between their neighbours in time; a point that was never seen is absent.
+    /// The landmarks of a recording whose joints play these roles. A point missing in some frames is filled linearly
+    /// between its neighbours in time, relative to the landmark that carries it, and before the first and after the
+    /// last moves along with that; a point that was never seen is absent.
     pub fn of(recording: &Recording, map: &RoleMap) -> Self {
         let frames = recording.frames();
-        let mut seen: BTreeMap<Role, Vec<Option<Vector3<f64>>>> = BTreeMap::new();
-        let mut rotations: BTreeMap<Role, Vec<UnitQuaternion<f64>>> = BTreeMap::new();
+        let joints: Vec<(Role, usize)> = map.joints.iter().map(|(&r, &j)| (r, j)).collect();
         let tips: Vec<(Role, usize, Vector3<f64>)> = TIPS
             .iter()
             .filter(|(role, _)| !map.joints.contains_key(role))
@@ -49,34 +76,43 @@ impl Landmarks {
                 (tip.norm() > 1e-6).then_some((*role, joint, tip))
             })
             .collect();
+        let roles = || {
+            let of_joints = joints.iter().map(|(r, _)| *r);
+            of_joints.chain(tips.iter().map(|(r, ..)| *r))
+        };
+        let mut seen: Vec<Vec<Option<Vector3<f64>>>> =
+            roles().map(|_| Vec::with_capacity(frames)).collect();
+        let mut turns: Vec<Vec<UnitQuaternion<f64>>> = vec![Vec::new(); joints.len()];
+        let mut placed = Vec::new();
         for frame in 0..frames {
-            let placed = recording.placements(frame);
-            for (&role, &joint) in &map.joints {
-                seen.entry(role).or_default().push(placed[joint].position);
+            recording.place(frame, &mut placed);
+            for (k, &(_, joint)) in joints.iter().enumerate() {
+                seen[k].push(placed[joint].position);
                 if let Some(q) = placed[joint].rotation {
-                    rotations.entry(role).or_default().push(q);
+                    turns[k].push(q);
                 }
             }
-            for (role, joint, tip) in &tips {
-                let point = match (placed[*joint].position, placed[*joint].rotation) {
-                    (Some(p), Some(q)) => Some(p + q * tip),
-                    _ => None,
-                };
-                seen.entry(*role).or_default().push(point);
+            for (k, (_, joint, tip)) in tips.iter().enumerate() {
+                let place = placed[*joint].position.zip(placed[*joint].rotation);
+                seen[joints.len() + k].push(place.map(|(p, q)| p + q * tip));
             }
         }
-        let samples: usize = seen.values().map(Vec::len).sum();
+        let samples: usize = seen.iter().map(Vec::len).sum();
         let missing: usize = seen
-            .values()
+            .iter()
             .map(|p| p.iter().filter(|x| x.is_none()).count())
             .sum();
-        let positions = seen
-            .into_iter()
-            .filter_map(|(role, path)| Some((role, filled(&path)?)))
+        let seen: BTreeMap<_, _> = roles().zip(seen).collect();
+        let rotations = joints
+            .iter()
+            .map(|(r, _)| *r)
+            .zip(turns)
+            .filter(|(_, t)| t.len() == frames)
             .collect();
         Self {
             frames,
-            positions,
+            rate_hz: recording.rate_hz(),
+            positions: all_filled(seen),
             rotations,
             rest: rest(recording, map, &tips),
             filled: missing as f64 / samples.max(1) as f64,
@@ -119,28 +155,55 @@ fn rest(
     joints.chain(ends).collect()
 }
 
-/// A path with its gaps filled linearly and its ends held; `None` when nothing was seen.
-fn filled(path: &[Option<Vector3<f64>>]) -> Option<Vec<Vector3<f64>>> {
+/// All paths with their gaps filled, carriers first.
+fn all_filled(
+    mut seen: BTreeMap<Role, Vec<Option<Vector3<f64>>>>,
+) -> BTreeMap<Role, Vec<Vector3<f64>>> {
+    let mut done: BTreeMap<Role, Vec<Vector3<f64>>> = BTreeMap::new();
+    let carried = CARRIED
+        .iter()
+        .map(|(role, carrier)| (*role, Some(*carrier)));
+    let order: Vec<(Role, Option<Role>)> = std::iter::once((Role::LeftUpperLeg, None))
+        .chain(carried)
+        .chain(Role::ALL.iter().map(|&r| (r, Some(Role::LeftUpperLeg))))
+        .collect();
+    for (role, carrier) in order {
+        let Some(path) = seen.remove(&role) else {
+            continue;
+        };
+        let base = carrier.and_then(|c| done.get(&c));
+        if let Some(whole) = filled(&path, base.map(Vec::as_slice)) {
+            done.insert(role, whole);
+        }
+    }
+    done
+}
+
+/// A path with its gaps filled linearly and its ends held, relative to `base`; `None` when nothing was seen.
+fn filled(
+    path: &[Option<Vector3<f64>>],
+    base: Option<&[Vector3<f64>]>,
+) -> Option<Vec<Vector3<f64>>> {
     let known: Vec<usize> = (0..path.len()).filter(|&i| path[i].is_some()).collect();
     let (first, last) = (*known.first()?, *known.last()?);
-    let at = |i: usize| path[i].unwrap_or_else(Vector3::zeros);
+    let from = |i: usize| base.map_or(Vector3::zeros(), |b| b[i]);
+    let at = |i: usize| path[i].map_or(Vector3::zeros(), |p| p - from(i));
     let mut next = 0;
     let fill = |i: usize| {
-        if i <= first {
-            return at(first);
+        if let Some(seen) = path[i] {
+            return seen;
         }
-        if i >= last {
-            return at(last);
+        if i < first {
+            return from(i) + at(first);
+        }
+        if i > last {
+            return from(i) + at(last);
         }
         while known[next] < i {
             next += 1;
         }
-        let b = known[next];
-        if b == i {
-            return at(i);
-        }
-        let a = known[next - 1];
-        at(a) + (at(b) - at(a)) * ((i - a) as f64 / (b - a) as f64)
+        let (a, b) = (known[next - 1], known[next]);
+        from(i) + at(a) + (at(b) - at(a)) * ((i - a) as f64 / (b - a) as f64)
     };
     Some((0..path.len()).map(fill).collect())
 }

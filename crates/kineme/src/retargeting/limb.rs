@@ -1,15 +1,28 @@
 //! The frame of a limb's upper segment: its bone's direction and its twist about it.
 //!
-//! The twist follows the hinge plane of elbow or knee. Near a straight limb the plane is lost, and the source's own
-//! twist carries on, or continuity where the source has none.
+//! The twist follows the hinge plane of elbow or knee. Near a straight limb, or one folded up, the plane is lost in
+//! noise; there the twist comes from the source's own, else from smooth passage between the frames where it is known,
+//! drawn slowly toward what is usual for the limb. All twists are angles about the bone against a frame that the
+//! direction alone fixes, of the middle of the joint's range, so that anatomy keeps them well inside (-pi, pi).
 
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::math::rotation::{shortest, twist_angle, wrap};
+use crate::math::statistics::median;
 
-/// Flexion (radians) below which the hinge plane says nothing, and above which it says all.
-const STRAIGHT: f64 = 0.17;
+/// Flexion (radians) above which the hinge plane of a clean source says all; it starts to say something at
+/// [`STRAIGHT`] of it.
 const BENT: f64 = 0.44;
+const STRAIGHT: f64 = 0.39;
+/// Noise of the twist (radians) that is let through from the plane, and which sets the bend that a noisy source needs.
+const NOISE_ACCEPTED: f64 = 0.15;
+/// Noise of the twist (radians) at which the plane is worth as much as the smoothed passage.
+const NOISE_HALF: f64 = 0.09;
+/// Seconds over which noise of the plane is smoothed, and in which a straight limb comes back to its usual twist.
+const SMOOTHING_SECS: f64 = 0.1;
+const RETURN_SECS: f64 = 3.0;
+/// The same return where the source's own twist, or the foot of a straight leg, says what the twist is.
+const FOLLOW_SECS: f64 = 0.3;
 
 /// One frame of a limb as it was observed, all in world axes.
 #[derive(Debug, Clone, Copy)]
@@ -20,8 +33,21 @@ pub struct LimbSample {
     pub upper: Vector3<f64>,
     /// Unit direction of the lower segment, outward.
     pub lower: Vector3<f64>,
+    /// Unit direction of the foot, toward the toes, for a leg.
+    pub toes: Option<Vector3<f64>>,
     /// The source's orientation of the upper segment, its bone along -z, if it has one.
     pub source: Option<UnitQuaternion<f64>>,
+}
+
+/// Which way a limb's hinge bends and where its ball joint rests.
+#[derive(Debug, Clone, Copy)]
+pub struct LimbKind {
+    /// True for the arm (the forearm comes forward), false for the leg.
+    pub bends_forward: bool,
+    /// The middle of the range of the joint between carrier and upper segment.
+    pub reference: UnitQuaternion<f64>,
+    /// The constant twist from the source's orientation to the anatomy, known from its zero pose.
+    pub resting: Option<f64>,
 }
 
 /// Frames of a limb's two segments.
@@ -33,59 +59,50 @@ pub struct LimbFrames {
     pub lower: Vec<UnitQuaternion<f64>>,
 }
 
-/// The frame of twist zero for a bone along `direction` (in the carrier's axes): the shortest way from the reference.
-fn untwisted(reference: &UnitQuaternion<f64>, direction: &Vector3<f64>) -> UnitQuaternion<f64> {
-    shortest(&(reference * -Vector3::z()), direction) * reference
+/// What one frame says of the twist, all angles against `base` and, where there is one, the source's twist.
+struct Reading {
+    /// The frame of twist zero: the shortest way from the reference to the bone's direction.
+    base: UnitQuaternion<f64>,
+    /// Twist of the source, 0 without one.
+    source: f64,
+    /// Twist of the hinge plane.
+    plane: f64,
+    /// Bend of the hinge, radians in [0, pi].
+    flexion: f64,
+    /// Trust in the plane, in [0, 1].
+    trust: f64,
+    /// Usual twist where the plane is silent, and how firmly it draws (1/frames^2, relative).
+    usual: f64,
+    pull: f64,
 }
 
-/// Frames of a limb over time. `bends_forward` is true for the arm (the forearm comes forward), false for the leg;
-/// `reference` is the middle of the joint's range; `resting` the twist offset known from the source's zero pose, if any.
-pub fn limb_frames(
-    samples: &[LimbSample],
-    bends_forward: bool,
-    reference: &UnitQuaternion<f64>,
-    resting: Option<f64>,
-) -> LimbFrames {
-    let side = if bends_forward { -1.0 } else { 1.0 };
-    let z = Vector3::z_axis();
-    // Per frame: frame of twist zero, twist of the hinge plane with its confidence, twist of the source.
-    let looked: Vec<_> = samples
+/// Frames of a limb over time, `rate_hz` samples a second.
+pub fn limb_frames(samples: &[LimbSample], kind: &LimbKind, rate_hz: f64) -> LimbFrames {
+    let noise = direction_noise(samples);
+    let has_source = samples.iter().all(|s| s.source.is_some());
+    let mut readings: Vec<Reading> = samples
         .iter()
-        .map(|s| {
-            let base = s.carrier * untwisted(reference, &(s.carrier.inverse() * s.upper));
-            let normal = s.upper.cross(&s.lower) * side;
-            let flexion = normal.norm().atan2(s.upper.dot(&s.lower));
-            let share = ((flexion - STRAIGHT) / (BENT - STRAIGHT)).clamp(0.0, 1.0);
-            let confidence = share * share * (3.0 - 2.0 * share);
-            let local = base.inverse() * normal;
-            let plane = (-local.x).atan2(local.y);
-            let source = s.source.map(|q| twist_angle(&(base.inverse() * q), &z));
-            (base, plane, confidence, source)
-        })
+        .map(|s| read(s, kind, has_source, noise, rate_hz))
         .collect();
-    let twists = if looked.iter().all(|l| l.3.is_some()) {
-        let pairs: Vec<(f64, f64, f64)> = looked
-            .iter()
-            .map(|l| (l.1, l.2, l.3.unwrap_or_default()))
-            .collect();
-        twists_with_source(&pairs, resting)
-    } else {
-        let pairs: Vec<(f64, f64)> = looked.iter().map(|l| (l.1, l.2)).collect();
-        let plain: Vec<f64> = samples
-            .iter()
-            .zip(&looked)
-            .map(|(s, l)| {
-                let hanging =
-                    s.carrier * shortest(&-Vector3::z(), &(s.carrier.inverse() * s.upper));
-                twist_angle(&(l.0.inverse() * hanging), &z)
-            })
-            .collect();
-        twists_by_continuity(&pairs, &plain)
-    };
-    let upper: Vec<UnitQuaternion<f64>> = looked
+    let center = center(&readings, kind.resting.filter(|_| has_source));
+    if has_source {
+        for r in &mut readings {
+            r.usual = center;
+            r.pull = pull(FOLLOW_SECS, rate_hz);
+        }
+    }
+    let planes = follow(&mut readings, center);
+    let smoothed = smooth(&readings, &planes, center, rate_hz);
+    let z = Vector3::z_axis();
+    let upper: Vec<UnitQuaternion<f64>> = readings
         .iter()
-        .zip(&twists)
-        .map(|(l, &twist)| l.0 * UnitQuaternion::from_axis_angle(&z, twist))
+        .zip(planes.iter().zip(&smoothed))
+        .map(|(r, (plane, smoothed))| {
+            let noise = noise / r.flexion.sin().max(1e-9);
+            let share = r.trust / (1.0 + (noise / NOISE_HALF).powi(2));
+            let twist = smoothed + share * (plane - smoothed) + r.source;
+            r.base * UnitQuaternion::from_axis_angle(&z, twist)
+        })
         .collect();
     let lower = upper
         .iter()
@@ -95,59 +112,132 @@ pub fn limb_frames(
     LimbFrames { upper, lower }
 }
 
-/// The source's twist, offset so that it agrees with the hinge plane where that is clear, corrected there frame by frame.
-fn twists_with_source(pairs: &[(f64, f64, f64)], resting: Option<f64>) -> Vec<f64> {
-    let (mut x, mut y) = (0.0, 0.0);
-    for (plane, confidence, source) in pairs {
-        x += confidence * (plane - source).cos();
-        y += confidence * (plane - source).sin();
-    }
-    let clear = x.hypot(y);
-    let offset = if clear > 1.0 {
-        y.atan2(x)
-    } else {
-        resting.unwrap_or(0.0)
+fn read(s: &LimbSample, kind: &LimbKind, has_source: bool, noise: f64, rate_hz: f64) -> Reading {
+    let down = -Vector3::z();
+    let z = Vector3::z_axis();
+    let direction = s.carrier.inverse() * s.upper;
+    let reference = kind.reference * down;
+    let untwisted = |d: &Vector3<f64>| shortest(&reference, d) * kind.reference;
+    let base = s.carrier * untwisted(&direction);
+    let about = |axis: &Vector3<f64>| {
+        let local = base.inverse() * axis;
+        (-local.x).atan2(local.y)
     };
-    let mut before = 0.0;
-    pairs
-        .iter()
-        .map(|(plane, confidence, source)| {
-            let twist = source + offset + confidence * wrap(plane - source - offset);
-            before += wrap(twist - before);
-            before
+    let source = match s.source {
+        Some(q) if has_source => twist_angle(&(base.inverse() * q), &z),
+        _ => 0.0,
+    };
+    let normal = s.upper.cross(&s.lower) * if kind.bends_forward { -1.0 } else { 1.0 };
+    let flexion = normal.norm().atan2(s.upper.dot(&s.lower));
+    let bent = BENT.max((noise / NOISE_ACCEPTED).min(0.78).asin());
+    // A limb folded up has no better plane than a straight one.
+    let open = flexion.min(std::f64::consts::PI - flexion);
+    // Straight down the usual frame is the neutral one, elsewhere the middle of the range.
+    let hanging = twist_angle(&untwisted(&down).inverse(), &z) * direction.dot(&down).max(0.0);
+    let mut usual = wrap(hanging - source);
+    let mut firmness = pull(RETURN_SECS, rate_hz);
+    if let Some(toes) = s.toes {
+        let axis = toes.cross(&s.lower);
+        let clear = axis.norm_squared();
+        if clear > 0.1 {
+            usual = wrap(about(&axis) - source);
+            firmness = pull(FOLLOW_SECS, rate_hz) * clear;
+        }
+    }
+    Reading {
+        base,
+        source,
+        plane: wrap(about(&normal) - source),
+        flexion,
+        trust: smoothstep(bent * STRAIGHT, bent, open),
+        usual,
+        pull: firmness,
+    }
+}
+
+/// Standard deviation (radians) of the noise in the angle between the two segments, from third differences in time,
+/// in which movement is small: the median of their lengths is 1.177 sqrt(20) deviations.
+fn direction_noise(samples: &[LimbSample]) -> f64 {
+    let deviation = |at: fn(&LimbSample) -> Vector3<f64>| {
+        let third: Vec<f64> = samples
+            .windows(4)
+            .map(|w| (at(&w[3]) - 3.0 * at(&w[2]) + 3.0 * at(&w[1]) - at(&w[0])).norm())
+            .collect();
+        median(&third).unwrap_or(0.0) / (1.177 * 20f64.sqrt())
+    };
+    deviation(|s| s.upper).hypot(deviation(|s| s.lower))
+}
+
+/// The mean twist where the plane is clear; else the known offset of the zero pose, else the mean of what is usual.
+fn center(readings: &[Reading], resting: Option<f64>) -> f64 {
+    let mean = |of: &dyn Fn(&Reading) -> (f64, f64)| {
+        readings.iter().fold((0.0, 0.0), |(x, y), r| {
+            let (weight, angle) = of(r);
+            (x + weight * angle.cos(), y + weight * angle.sin())
+        })
+    };
+    let (x, y) = mean(&|r| (r.trust, r.plane));
+    if x.hypot(y) > 1.0 {
+        return y.atan2(x);
+    }
+    resting.unwrap_or_else(|| {
+        let (x, y) = mean(&|r| (1.0, r.usual));
+        y.atan2(x)
+    })
+}
+
+/// The planes' twists without jumps of a full turn. A plane opposite to the ones before, in a limb hardly bent, is one
+/// bent the wrong way (a hyperextended knee or elbow, or noise): its trust is taken back.
+fn follow(readings: &mut [Reading], center: f64) -> Vec<f64> {
+    let mut before = center;
+    readings
+        .iter_mut()
+        .map(|r| {
+            let off = wrap(r.plane - before);
+            let likely = smoothstep(-0.5, 0.0, off.cos());
+            r.trust *= likely.max(smoothstep(0.45, 0.8, r.flexion));
+            let plane = before + off;
+            before += r.trust * off;
+            plane
         })
         .collect()
 }
 
-/// The hinge plane's twist where it is clear; between such frames linear in time, before and after them held;
-/// `plain` (no twist against the hanging limb) where it never is.
-fn twists_by_continuity(pairs: &[(f64, f64)], plain: &[f64]) -> Vec<f64> {
-    let clear: Vec<usize> = (0..pairs.len()).filter(|&i| pairs[i].1 > 0.5).collect();
-    let (Some(&first), Some(&last)) = (clear.first(), clear.last()) else {
-        return plain.to_vec();
-    };
-    let mut bridged = vec![0.0; pairs.len()];
-    let mut before: Option<(usize, f64)> = None;
-    for &i in &clear {
-        let value = match before {
-            Some((_, b)) => b + wrap(pairs[i].0 - b),
-            None => pairs[i].0,
+/// The twist that is near the planes where they are clear, near the usual one where they are not, and smooth: the
+/// least squares of Whittaker (1923), one tridiagonal system.
+fn smooth(readings: &[Reading], planes: &[f64], center: f64, rate_hz: f64) -> Vec<f64> {
+    let stiffness = (SMOOTHING_SECS * rate_hz).powi(2).max(1e-6);
+    let n = readings.len();
+    let mut upper = vec![0.0; n];
+    let mut twist = vec![0.0; n];
+    // The usual twist is named on the turn where the planes last were.
+    let mut near = center;
+    for (i, r) in readings.iter().enumerate() {
+        near += r.trust * (planes[i] - near);
+        let usual = near + wrap(r.usual - near);
+        let clear = r.trust * r.flexion.sin().powi(2);
+        let neighbours = f64::from(i > 0) + f64::from(i + 1 < n);
+        let diagonal = clear + stiffness * (r.pull + neighbours);
+        let right = clear * planes[i] + stiffness * r.pull * usual;
+        let (carried, left) = match i {
+            0 => (0.0, 0.0),
+            _ => (stiffness * upper[i - 1], stiffness * twist[i - 1]),
         };
-        if let Some((a, b)) = before {
-            for (k, between) in bridged[a + 1..i].iter_mut().enumerate() {
-                *between = b + (value - b) * (k + 1) as f64 / (i - a) as f64;
-            }
-        }
-        bridged[i] = value;
-        before = Some((i, value));
+        upper[i] = stiffness / (diagonal - carried);
+        twist[i] = (right + left) / (diagonal - carried);
     }
-    let (head, tail) = (bridged[first], bridged[last]);
-    bridged[..first].fill(head);
-    bridged[last + 1..].fill(tail);
-    // Fade from the bridge to the plane as the plane becomes clear, so that nothing jumps at the threshold.
-    bridged
-        .iter()
-        .zip(pairs)
-        .map(|(b, (plane, confidence))| b + confidence * wrap(plane - b))
-        .collect()
+    for i in (0..n.saturating_sub(1)).rev() {
+        twist[i] += upper[i] * twist[i + 1];
+    }
+    twist
+}
+
+/// The pull toward a value, relative to the stiffness, that is felt within `secs`.
+fn pull(secs: f64, rate_hz: f64) -> f64 {
+    (secs * rate_hz).max(1.0).powi(-2)
+}
+
+fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
+    let s = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    s * s * (3.0 - 2.0 * s)
 }

@@ -8,6 +8,8 @@ mod fit;
 mod guess;
 mod landmarks;
 mod limb;
+mod orientation;
+mod own;
 mod profile;
 
 pub use anatomy::Anatomy;

@@ -2,15 +2,17 @@
 
 use nalgebra::Vector3;
 
-use super::anthropometry::HEAD;
 use super::body::Skeleton;
 use super::joint::{Joint, JointKind};
 use super::parts::{
     Hinges, SACRUM, Side, TRUNK_TOP, arm, ball, effectors, leg, shoulder_offset, skull, trunk_axes,
-    trunk_slab,
+    trunk_slab, vertex_over,
 };
 use super::role::Role;
 use crate::error::Result;
+
+/// Height of the neck's joint over the hips, metres: the level of the chin, half-way up the cervical spine.
+const NECK: f64 = TRUNK_TOP + 0.08;
 
 /// Adonis (paper, section IV): waist 3, neck 3, shoulders 3 + 3, elbows 1 + 1, wrists 3 + 3 = 20; the legs do not move.
 ///
@@ -47,13 +49,13 @@ pub fn adonis() -> Result<Skeleton> {
         Joint {
             name: "neck".into(),
             parent: Some(1),
-            offset: up(TRUNK_TOP + 0.08 - SACRUM),
+            offset: up(NECK - SACRUM),
             kind: ball(&axes, [(-60.0, 50.0), (-40.0, 40.0), (-80.0, 80.0)]),
             axes,
             role: Some(Role::Head),
             share: 1.0,
-            tip: up(HEAD.length),
-            link: skull(1.0),
+            tip: up(vertex_over(NECK)),
+            link: skull(1.0, NECK),
         },
     ];
     for side in [Side::Left, Side::Right] {

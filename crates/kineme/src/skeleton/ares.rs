@@ -8,7 +8,7 @@ use super::body::Skeleton;
 use super::joint::{ClinicalAxes, Joint, Link};
 use super::parts::{
     Hinges, SACRUM, Side, TRUNK_TOP, arm, ball, effectors, leg, neck_share, shoulder_offset, skull,
-    trunk_axes, trunk_slab,
+    trunk_axes, trunk_slab, vertex_over,
 };
 use super::role::Role;
 use crate::error::Result;
@@ -95,8 +95,8 @@ pub fn ares() -> Result<Skeleton> {
         axes,
         role: Some(Role::Head),
         share: 0.4,
-        tip: up(HEAD.length),
-        link: skull(skull_share),
+        tip: up(vertex_over(height)),
+        link: skull(skull_share, height),
     });
     shoulders(&mut joints, top_of_thorax);
     for side in [Side::Left, Side::Right] {

@@ -7,6 +7,7 @@ mod adonis;
 mod anthropometry;
 mod ares;
 mod body;
+mod clinical;
 mod joint;
 mod kinematics;
 mod parts;

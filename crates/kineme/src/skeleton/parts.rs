@@ -6,7 +6,7 @@ use nalgebra::{Unit, Vector3};
 
 use super::anthropometry::{
     ANKLE_HEIGHT, FOOT, FOREARM, HALF_HIPS, HALF_SHOULDERS, HAND, HEAD, LOWER_TRUNK, MIDDLE_TRUNK,
-    SHANK, SHOULDERS_OVER_HIPS, THIGH, UPPER_ARM, UPPER_TRUNK, WHOLE_HAND, join, moved,
+    SHANK, SHOULDERS_OVER_HIPS, STATURE, THIGH, UPPER_ARM, UPPER_TRUNK, WHOLE_HAND, join, moved,
 };
 use super::body::Effector;
 use super::joint::{ClinicalAxes, Joint, JointKind, Link, Range};
@@ -131,9 +131,15 @@ pub fn neck_share(height: f64) -> f64 {
     std::f64::consts::PI * NECK_RADIUS * NECK_RADIUS * height * NECK_DENSITY / HEAD.mass_kg()
 }
 
-/// The head above the neck, in the frame of its joint; `share` of the segment's mass.
-pub fn skull(share: f64) -> Link {
-    let center = Vector3::new(0.0, 0.0, (1.0 - HEAD.center) * HEAD.length);
+/// Height of the vertex over a joint that stands `at` metres over the hips: the whole body is [`STATURE`] tall.
+pub fn vertex_over(at: f64) -> f64 {
+    STATURE - (ANKLE_HEIGHT + SHANK.length + THIGH.length) - at
+}
+
+/// The head above the neck, in the frame of its joint `at` metres over the hips; `share` of the segment's mass.
+/// Its centre is where de Leva has it, below the vertex.
+pub fn skull(share: f64, at: f64) -> Link {
+    let center = Vector3::new(0.0, 0.0, vertex_over(at) - HEAD.center * HEAD.length);
     HEAD.slice(share, HEAD.length, center)
 }
 
