@@ -3,6 +3,7 @@
 use kineme::Recording;
 
 use crate::error::{FormatError, Place, Result};
+use crate::tables::{msr, positions};
 use crate::text::{Blame, Lines, number, words};
 use crate::{amc, asf, bvh, deepmimic};
 
@@ -175,8 +176,8 @@ pub fn parse(
             None => Err(Blame(name).file("an AMC without its ASF", "a skeleton file beside it")),
         },
         Kind::Asf => Err(Blame(name).file("a skeleton", "a motion (`.amc`) of it")),
-        Kind::Positions | Kind::TimedPositions => unread("a position table"),
-        Kind::Msr => unread("MSR-Action3D text"),
+        Kind::Positions | Kind::TimedPositions => positions::parse(name, bytes, rate_hz),
+        Kind::Msr => msr::parse(name, bytes, rate_hz),
         Kind::Angles => unread("a joint-angle table"),
         Kind::C3d => unread("C3D"),
         Kind::Zip => Err(Blame(name).file("an archive inside an archive", "a motion")),

@@ -96,7 +96,9 @@ impl<'a> Clips<'a> {
             segments[pair[0]].successor = Some(pair[1]);
         }
         let distances = SegmentDistances::All(self.distances.clone());
-        Ok(self.settings.group_by(distances, &self.sequences, segments, &mut |_| {})?)
+        Ok(self
+            .settings
+            .group_by(distances, &self.sequences, segments, &mut |_| {})?)
     }
 
     /// The same with the distances permuted at random: what order alone gives.
@@ -107,14 +109,16 @@ impl<'a> Clips<'a> {
         let mut upper = self.distances.upper().to_vec();
         let mut random = Pcg64::seed_from_u64(seed ^ 0x5eed);
         upper.shuffle(&mut random);
-        
+
         let distances = DistanceMatrix::from_upper(self.distances.len(), upper)?;
         let mut segments = separate(&self.set.motions);
         for pair in self.order(Order::Routine, seed).windows(2) {
             segments[pair[0]].successor = Some(pair[1]);
         }
         let distances = SegmentDistances::All(distances);
-        Ok(self.settings.group_by(distances, &self.sequences, segments, &mut |_| {})?)
+        Ok(self
+            .settings
+            .group_by(distances, &self.sequences, segments, &mut |_| {})?)
     }
 
     /// Items in the order of a performance; empty where each stands alone.
@@ -304,9 +308,39 @@ impl Clips<'_> {
         use std::io::Write;
         let n = self.distances.len();
         let mut f = std::io::BufWriter::new(std::fs::File::create(path).unwrap());
-        writeln!(f, "{}", self.set.labels.iter().map(|l| l.to_string()).collect::<Vec<_>>().join(" ")).unwrap();
-        for i in 0..n { writeln!(f, "{}", (0..n).map(|j| format!("{:.6}", self.distances.get(i, j))).collect::<Vec<_>>().join(" ")).unwrap(); }
+        writeln!(
+            f,
+            "{}",
+            self.set
+                .labels
+                .iter()
+                .map(|l| l.to_string())
+                .collect::<Vec<_>>()
+                .join(" ")
+        )
+        .unwrap();
+        for i in 0..n {
+            writeln!(
+                f,
+                "{}",
+                (0..n)
+                    .map(|j| format!("{:.6}", self.distances.get(i, j)))
+                    .collect::<Vec<_>>()
+                    .join(" ")
+            )
+            .unwrap();
+        }
         let mut f = std::io::BufWriter::new(std::fs::File::create(format!("{path}.seq")).unwrap());
-        for s in &self.sequences { writeln!(f, "{}", s.iter().map(|v| format!("{v:.5}")).collect::<Vec<_>>().join(" ")).unwrap(); }
+        for s in &self.sequences {
+            writeln!(
+                f,
+                "{}",
+                s.iter()
+                    .map(|v| format!("{v:.5}"))
+                    .collect::<Vec<_>>()
+                    .join(" ")
+            )
+            .unwrap();
+        }
     }
 }

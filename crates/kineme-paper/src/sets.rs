@@ -60,7 +60,10 @@ pub fn index(corpus: &Path) -> Result<Vec<IndexRow>> {
             FormatError::new(
                 path.display().to_string(),
                 Place::Line(1),
-                format!("the columns {}", headers.iter().collect::<Vec<_>>().join(", ")),
+                format!(
+                    "the columns {}",
+                    headers.iter().collect::<Vec<_>>().join(", ")
+                ),
                 format!("a column `{name}`"),
             )
         })
@@ -129,14 +132,24 @@ fn read(corpus: &Path, row: &IndexRow) -> Result<kineme::Recording> {
     Ok(match row.format.as_str() {
         "joints-csv" => tables::positions::parse(name, &bytes, Some(30.0))?,
         "amc" => {
-            let stem = Path::new(name).file_stem().unwrap().to_string_lossy().to_string();
+            let stem = Path::new(name)
+                .file_stem()
+                .unwrap()
+                .to_string_lossy()
+                .to_string();
             let asf_path = if name.starts_with("hdm05") {
                 format!("/tmp/d/hdm05/{}.asf", &stem[..6])
             } else {
                 "/tmp/d/cmu-asfamc/02/02.asf".to_string()
             };
             let skeleton = asf::parse(&asf_path, &std::fs::read(&asf_path)?)?;
-            detect::parse(detect::Kind::Amc, name, &bytes, Some(120.0), Some(&skeleton))?
+            detect::parse(
+                detect::Kind::Amc,
+                name,
+                &bytes,
+                Some(120.0),
+                Some(&skeleton),
+            )?
         }
         _ => detect::parse(detect::Kind::Bvh, name, &bytes, None, None)?,
     })

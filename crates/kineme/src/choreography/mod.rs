@@ -1,5 +1,7 @@
 //! Floor 4: exemplars written by hand, as key postures and times.
 
+mod perform;
 mod script;
 
+pub use perform::perform;
 pub use script::{Key, Script, ScriptAnimation, ScriptExemplar};

@@ -25,7 +25,9 @@ pub fn perform(name: &str, keys: &[Key], body: &Arc<Skeleton>, rate_hz: f64) -> 
         return Err(Error::invalid(format!("`{name}` has no keys")));
     };
     if !(rate_hz.is_finite() && rate_hz > 0.0) {
-        return Err(Error::invalid(format!("a rate must be positive, found {rate_hz} Hz")));
+        return Err(Error::invalid(format!(
+            "a rate must be positive, found {rate_hz} Hz"
+        )));
     }
     let channels = channels(name, keys)?;
     let count = ((last.time - first.time) * rate_hz + 1e-9).floor() as usize + 1;
@@ -44,7 +46,13 @@ pub fn perform(name: &str, keys: &[Key], body: &Arc<Skeleton>, rate_hz: f64) -> 
         }
         poses.extend(pose);
     }
-    Motion::new(name, Arc::clone(body), rate_hz, poses, vec![Root::ORIGIN; count])
+    Motion::new(
+        name,
+        Arc::clone(body),
+        rate_hz,
+        poses,
+        vec![Root::ORIGIN; count],
+    )
 }
 
 /// The roles that channels move, in order.
@@ -59,7 +67,11 @@ fn channels(name: &str, keys: &[Key]) -> Result<Vec<Channel>> {
     let times: Vec<f64> = keys.iter().map(|k| k.time).collect();
     let mut channels = Vec::new();
     for &role in Role::ALL {
-        let places = keys.iter().filter_map(|k| k.angles.get(&role)).map(Vec::len).max();
+        let places = keys
+            .iter()
+            .filter_map(|k| k.angles.get(&role))
+            .map(Vec::len)
+            .max();
         for place in 0..places.unwrap_or(0) {
             let mut value = 0.0;
             let values: Vec<f64> = keys
@@ -74,7 +86,11 @@ fn channels(name: &str, keys: &[Key]) -> Result<Vec<Channel>> {
                 .collect();
             let spline = ClampedSpline::new(&times, &values)
                 .map_err(|e| Error::invalid(format!("`{name}`, {}: {e}", role.name())))?;
-            channels.push(Channel { role, place, spline });
+            channels.push(Channel {
+                role,
+                place,
+                spline,
+            });
         }
     }
     channels.sort_by_key(|c| (c.role, c.place));

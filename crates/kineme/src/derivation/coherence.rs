@@ -47,14 +47,21 @@ pub fn simplified_silhouettes(
     for (sequence, label) in sequences.iter().zip(labels) {
         if let Some(g) = *label {
             sizes[g] += 1;
-            means_of[g].iter_mut().zip(sequence).for_each(|(m, v)| *m += v);
+            means_of[g]
+                .iter_mut()
+                .zip(sequence)
+                .for_each(|(m, v)| *m += v);
         }
     }
     for (mean, &size) in means_of.iter_mut().zip(&sizes) {
         mean.iter_mut().for_each(|m| *m /= size.max(1) as f64);
     }
     let distance = |a: &[f64], b: &[f64]| -> f64 {
-        a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt()
+        a.iter()
+            .zip(b)
+            .map(|(x, y)| (x - y).powi(2))
+            .sum::<f64>()
+            .sqrt()
     };
     let mut sums = vec![0.0; groups];
     for (sequence, label) in sequences.iter().zip(labels) {

@@ -98,7 +98,12 @@ impl Features {
     }
 
     /// Frames `range` of a feature sequence resampled linearly to [`Features::frames`], less the share of its mean.
-    pub fn segment(&self, sequence: &[f64], dims: usize, range: std::ops::Range<usize>) -> Vec<f64> {
+    pub fn segment(
+        &self,
+        sequence: &[f64],
+        dims: usize,
+        range: std::ops::Range<usize>,
+    ) -> Vec<f64> {
         let n = self.frames;
         let length = range.len();
         let row = |f: usize| &sequence[(range.start + f) * dims..(range.start + f + 1) * dims];

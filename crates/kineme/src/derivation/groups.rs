@@ -74,16 +74,24 @@ fn central_first(segments: &mut [usize], sequences: &[Vec<f64>]) {
     let length = segments.first().map_or(0, |&s| sequences[s].len());
     let mut mean = vec![0.0; length];
     for &s in segments.iter() {
-        mean.iter_mut().zip(&sequences[s]).for_each(|(m, v)| *m += v);
+        mean.iter_mut()
+            .zip(&sequences[s])
+            .for_each(|(m, v)| *m += v);
     }
     let n = segments.len().max(1) as f64;
     let from_mean = |s: usize| -> f64 {
-        let squares = mean.iter().zip(&sequences[s]).map(|(m, v)| (m / n - v).powi(2));
+        let squares = mean
+            .iter()
+            .zip(&sequences[s])
+            .map(|(m, v)| (m / n - v).powi(2));
         squares.sum()
     };
     let mut keyed: Vec<(f64, usize)> = segments.iter().map(|&s| (from_mean(s), s)).collect();
     keyed.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    segments.iter_mut().zip(keyed).for_each(|(s, (_, k))| *s = k);
+    segments
+        .iter_mut()
+        .zip(keyed)
+        .for_each(|(s, (_, k))| *s = k);
 }
 
 /// The second level of these groups; `size` is the neighbourhood and the smallest group of a second Isomap.

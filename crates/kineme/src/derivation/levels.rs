@@ -96,7 +96,10 @@ pub fn second_isomap(
         }
     }
     let all: Vec<Option<usize>> = joined.labels()[..groups].iter().map(|&l| Some(l)).collect();
-    Ok(crate::math::partition::renumbered(&all).into_iter().flatten().collect())
+    Ok(crate::math::partition::renumbered(&all)
+        .into_iter()
+        .flatten()
+        .collect())
 }
 
 /// Density by which groups of at least `size` are found: the smallest group is also the neighbourhood of the density.

@@ -100,7 +100,8 @@ impl Derivation {
 
     /// K as it will be used.
     pub fn neighbours(&self) -> usize {
-        self.neighbours.unwrap_or(if self.strokes() { 3 } else { 8 })
+        self.neighbours
+            .unwrap_or(if self.strokes() { 3 } else { 8 })
     }
 
     /// The smallest group as it will be used.
@@ -198,7 +199,11 @@ impl Derivation {
             .par_iter()
             .zip(&of_motion)
             .map(|(motion, items)| {
-                let all = if items.is_empty() { Vec::new() } else { self.features.of(motion) };
+                let all = if items.is_empty() {
+                    Vec::new()
+                } else {
+                    self.features.of(motion)
+                };
                 let dims = dims(motion.skeleton());
                 let one = |&i: &usize| {
                     let range = segments[i].frames.clone();

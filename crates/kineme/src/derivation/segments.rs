@@ -126,10 +126,17 @@ fn from_marks(motions: &[Motion], marks: &[Mark]) -> Result<Vec<Segment>> {
     let mut segments = Vec::with_capacity(marks.len());
     for mark in marks {
         let motion = motions.get(mark.motion).ok_or_else(|| {
-            Error::invalid(format!("a mark names motion {} of {}", mark.motion, motions.len()))
+            Error::invalid(format!(
+                "a mark names motion {} of {}",
+                mark.motion,
+                motions.len()
+            ))
         })?;
         let frame = |secs: f64| (secs * motion.rate_hz()).round().max(0.0) as usize;
-        let (start, end) = (frame(mark.start_secs), frame(mark.end_secs).min(motion.frames()));
+        let (start, end) = (
+            frame(mark.start_secs),
+            frame(mark.end_secs).min(motion.frames()),
+        );
         if !(mark.start_secs >= 0.0 && mark.end_secs > mark.start_secs) || start >= end {
             return Err(Error::invalid(format!(
                 "a mark from {} s to {} s does not lie in `{}`, which lasts {:.3} s",

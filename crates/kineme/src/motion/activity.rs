@@ -7,10 +7,19 @@ use crate::skeleton::{Frame, JointKind, Role};
 
 /// Limbs by the roles of their joints beyond the root one, and whether the thorax (else the pelvis) carries them.
 const LIMBS: [([Role; 3], bool); 4] = [
-    ([Role::LeftLowerArm, Role::LeftHand, Role::LeftFingers], true),
-    ([Role::RightLowerArm, Role::RightHand, Role::RightFingers], true),
+    (
+        [Role::LeftLowerArm, Role::LeftHand, Role::LeftFingers],
+        true,
+    ),
+    (
+        [Role::RightLowerArm, Role::RightHand, Role::RightFingers],
+        true,
+    ),
     ([Role::LeftLowerLeg, Role::LeftFoot, Role::LeftToes], false),
-    ([Role::RightLowerLeg, Role::RightFoot, Role::RightToes], false),
+    (
+        [Role::RightLowerLeg, Role::RightFoot, Role::RightToes],
+        false,
+    ),
 ];
 
 /// Coordinates of one limb centroid.

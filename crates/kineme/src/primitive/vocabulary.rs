@@ -90,7 +90,10 @@ impl Vocabulary {
                 )));
             }
             if p.exemplars.is_empty() {
-                return Err(Error::invalid(format!("primitive `{}` has no exemplar", p.name)));
+                return Err(Error::invalid(format!(
+                    "primitive `{}` has no exemplar",
+                    p.name
+                )));
             }
             let foreign = |e: &&Exemplar| **e.motion.skeleton() != *body;
             if let Some(e) = p.exemplars.iter().find(foreign) {
@@ -104,7 +107,11 @@ impl Vocabulary {
         }
         for name in behaviors.iter().flat_map(|b| &b.primitives) {
             if !names.contains(name.as_str()) {
-                return Err(Error::unknown_name("primitive", name, names.iter().copied()));
+                return Err(Error::unknown_name(
+                    "primitive",
+                    name,
+                    names.iter().copied(),
+                ));
             }
         }
         let n = primitives.len();
