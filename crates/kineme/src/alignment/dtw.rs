@@ -90,7 +90,8 @@ pub struct Alignment {
 /// Both ends are fixed, the steps (1,0), (0,1) and (1,1) weigh the same, all dimensions warp together.
 ///
 /// # Errors
-/// When `dims` is 0, a sequence is empty, its length no multiple of `dims`, or a number not finite.
+/// When `dims` is 0, a sequence is empty, its length no multiple of `dims`, a number not finite, or
+/// the distance too large for one.
 pub fn distance(a: &[f64], b: &[f64], dims: usize, band: Band, cost: LocalCost) -> Result<f64> {
     let sum = accumulate(a, b, dims, band, cost, |_, _, _| {})?;
     Ok(cost.finish(sum))
@@ -167,7 +168,12 @@ fn accumulate(
         }
         std::mem::swap(&mut above, &mut row);
     }
-    Ok(above[m])
+    if above[m].is_finite() {
+        return Ok(above[m]);
+    }
+    Err(Error::invalid(
+        "the sequences lie so far apart that their distance overflows",
+    ))
 }
 
 fn frames_of(sequence: &[f64], dims: usize) -> Result<usize> {

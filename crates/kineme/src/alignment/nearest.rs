@@ -133,7 +133,7 @@ pub fn nearest_to_recall(
     loop {
         let lists = nearest_neighbours(sequences, &config)?;
         let recall = recall(sequences, &lists, config.radius, goal);
-        let all = config.candidates + 1 >= sequences.len();
+        let all = config.candidates >= sequences.len().saturating_sub(1);
         if all || recall >= goal.recall {
             return Ok(Reached {
                 lists,

@@ -79,7 +79,8 @@ impl Sequences {
         Shape {
             frames: self.frames,
             dims: self.dims,
-            radius,
+            // A wider band holds nothing more.
+            radius: radius.min(self.frames),
         }
     }
 

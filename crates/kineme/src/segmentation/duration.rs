@@ -12,8 +12,8 @@ use crate::error::Result;
 
 /// Range of the scale, as powers of two to either side of 1.
 const OCTAVES: f64 = 8.0;
-/// Halvings of that range: the scale is found to half a per cent.
-const HALVINGS: usize = 11;
+/// Segmentations tried after the first: enough to find the scale to a per cent.
+const PROBES: usize = 13;
 
 /// Pendulum swings of a median of `target_secs`: scales how large a swing must be and how far it must return.
 ///
@@ -76,7 +76,7 @@ pub fn changepoint(
     })
 }
 
-/// Bisection over the scale; the best of all that was seen is kept, as real recordings are monotone only nearly.
+/// Bisection over the scale; the best of all that was seen is kept, as real recordings are only nearly monotone.
 ///
 /// `rising` says that a larger scale gives longer movements. Nearness is that of logarithms: twice as long
 /// is as far as half as long.
@@ -98,16 +98,23 @@ fn search(
     // The setting as it was given comes first, and stays if nothing is nearer.
     let mut best = probe(0.0)?;
     let mut median = best.median_secs;
-    let (mut low, mut middle, mut high) = (-OCTAVES, 0.0, OCTAVES);
-    for _ in 0..HALVINGS {
+    let (mut low, mut high) = (None, None);
+    let mut exponent = 0.0;
+    for _ in 0..PROBES {
         // Where nothing moves any more the threshold was too high, as if movements were too short.
         if median.is_some_and(|m| m > target_secs) == rising {
-            high = middle;
+            high = Some(exponent);
         } else {
-            low = middle;
+            low = Some(exponent);
         }
-        middle = 0.5 * (low + high);
-        let next = probe(middle)?;
+        // Outward in doubling steps until the target is enclosed, as far-off settings can be slow.
+        exponent = match (low, high) {
+            (Some(low), Some(high)) => 0.5 * (low + high),
+            (Some(low), None) if low < OCTAVES => f64::max(1.0, 2.0 * low),
+            (None, Some(high)) if high > -OCTAVES => f64::min(-1.0, 2.0 * high),
+            _ => break,
+        };
+        let next = probe(exponent)?;
         median = next.median_secs;
         if far(&next) < far(&best) {
             best = next;

@@ -73,14 +73,14 @@ impl<'a> Signal<'a> {
         self.values
     }
 
-    /// A duration in frames, rounded.
+    /// A duration in frames, rounded; one frame more than there are stands for all that is longer.
     pub(super) fn frames_in(&self, secs: f64) -> usize {
-        (secs * self.rate_hz).round() as usize
+        ((secs * self.rate_hz).round() as usize).min(self.frames() + 1)
     }
 
     /// Half of a centred window of this duration, in whole frames, so that the window is `2 h + 1` frames.
     pub(super) fn half_window(&self, secs: f64) -> usize {
-        (0.5 * secs * self.rate_hz).round() as usize
+        ((0.5 * secs * self.rate_hz).round() as usize).min(self.frames())
     }
 }
 
