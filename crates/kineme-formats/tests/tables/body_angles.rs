@@ -56,7 +56,7 @@ fn gaps_are_filled_in_time_and_told() {
                 0,0,0,0.95,0,,0.1\n0.01,0,0,0.95,0,1.0,0.1\n0.03,0,0,0.95,,,0.1\n0.04,0,0,0.95,0.5,0.4,0.1\n";
     let recording = parse(Kind::Angles, "gaps.csv", text.as_bytes(), None, None).unwrap();
     for words in [
-        "6 cells missing",
+        "9 cells missing",
         "of `adonis` never observed",
         "1 frames are not",
     ] {
@@ -84,8 +84,8 @@ fn tables_of_no_body_are_refused() {
     let head = "time,root_x,root_y,root_z,root_yaw";
     let typing_error = format!("{head},neck_x,skul_x\n0,0,0,0,0,0,0\n");
     let two_bodies = format!("{head},left_elbow,left_elbow_x\n0,0,0,0,0,0,0\n");
-    let many_rows: String = (0..9000).map(|i| format!("{i},,,,\n")).collect();
-    let hollow = format!("{head}\n{many_rows}");
+    let many_rows: String = (0..9000).map(|i| format!("{i},,,,,\n")).collect();
+    let hollow = format!("{head},lumbar_5_x\n{many_rows}");
     refuses(
         &[
             ("typing error", &typing_error, Place::Line(1), "`skul_x`"),
