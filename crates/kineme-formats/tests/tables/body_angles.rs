@@ -84,7 +84,9 @@ fn tables_of_no_body_are_refused() {
     let head = "time,root_x,root_y,root_z,root_yaw";
     let typing_error = format!("{head},neck_x,skul_x\n0,0,0,0,0,0,0\n");
     let two_bodies = format!("{head},left_elbow,left_elbow_x\n0,0,0,0,0,0,0\n");
-    let many_rows: String = (0..9000).map(|i| format!("{i},,,,,\n")).collect();
+    let many_rows: String = (0..9000)
+        .map(|i| format!("{},,,,,\n", i / 2 * 7 + i % 2))
+        .collect();
     let hollow = format!("{head},lumbar_5_x\n{many_rows}");
     refuses(
         &[
@@ -100,7 +102,7 @@ fn tables_of_no_body_are_refused() {
                 "nothing in it",
                 &hollow,
                 Place::File,
-                "joints in 9000 frames",
+                "44 joints in 31494 frames",
             ),
         ],
         |bytes| parse(Kind::Angles, "a.csv", bytes, None, None),
