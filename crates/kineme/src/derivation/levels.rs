@@ -1,6 +1,6 @@
 //! The second level: behaviours from sequences of primitives.
 
-use crate::clustering::{Density, hdbscan};
+use crate::clustering::{Density, hdbscan_judged};
 use crate::embedding::{EmbedOptions, Geodesics, NeighbourGraph, SpatioTemporal, embed};
 use crate::error::Result;
 use crate::math::distances::DistanceMatrix;
@@ -75,7 +75,7 @@ pub fn second_isomap(
     let graph = NeighbourGraph::segmented(&distances, successors, &options)?;
     let (_, geodesics) = embed(&graph, &EmbedOptions::default())?;
     let clusters = match &geodesics {
-        Geodesics::All(matrix) => hdbscan(matrix, &density(min_size))?,
+        Geodesics::All(matrix) => hdbscan_judged(matrix, &Density::of_size(min_size))?,
         Geodesics::Landmarks(_) => labels.to_vec(),
     };
     let found = clusters.iter().flatten().max().map_or(0, |m| m + 1);
@@ -100,12 +100,4 @@ pub fn second_isomap(
         .into_iter()
         .flatten()
         .collect())
-}
-
-/// Density by which groups of at least `size` are found: the smallest group is also the neighbourhood of the density.
-pub(super) fn density(size: usize) -> Density {
-    Density {
-        min_cluster_size: size,
-        min_samples: size,
-    }
 }
