@@ -122,8 +122,8 @@ fn cluster(rows: &[Vec<f32>], density: &Density) -> Result<Vec<Option<usize>>> {
     Ok(renumbered(&labels))
 }
 
-/// The full matrix, divided by its largest finite distance. Persistence is a sum of reciprocals, so a distance of zero
-/// would outweigh everything: none is taken as smaller than a millionth.
+/// The full matrix, divided by its largest finite distance: f32 then holds any unit. Infinite ones, which the crate
+/// refuses, become a thousand times the largest.
 fn scaled_rows(distances: &DistanceMatrix) -> Vec<Vec<f32>> {
     let finite = distances.upper().iter().filter(|d| d.is_finite());
     let largest = finite.fold(0.0, |m: f64, d| m.max(*d));
@@ -133,12 +133,7 @@ fn scaled_rows(distances: &DistanceMatrix) -> Vec<Vec<f32>> {
     (0..len)
         .map(|i| {
             distances.row_into(i, &mut row);
-            let mut scaled: Vec<f32> = row
-                .iter()
-                .map(|d| (d * scale).clamp(1e-6, 1e3) as f32)
-                .collect();
-            scaled[i] = 0.0;
-            scaled
+            row.iter().map(|d| (d * scale).min(1e3) as f32).collect()
         })
         .collect()
 }
