@@ -41,6 +41,9 @@ fn main() {
             set.classes.len(),
             t.elapsed()
         );
+        if std::env::var("CMU").is_ok() {
+            break;
+        }
         for shape in [0.0, 0.7] {
             let t = Instant::now();
             let clips = Clips::new(&set, shape).unwrap();
@@ -69,6 +72,89 @@ fn main() {
                     m(&|x| x.0.noise),
                     m(&|x| x.1.ari)
                 );
+            }
+        }
+    }
+
+    if std::env::var("CMU").is_err() {
+        return;
+    }
+    let cmu: Vec<sets::IndexRow> = rows
+        .iter()
+        .filter(|r| r.file.contains("13_") && r.archive == "cmu-asfamc.zip")
+        .cloned()
+        .collect();
+    let set = sets::load("CMU", corpus, &cmu, &body, &label).unwrap();
+    let text = std::fs::read_to_string(corpus.join("mocap6-labels.csv")).unwrap();
+    let mut names: Vec<String> = vec![];
+    let truth: Vec<Annotation> = set
+        .motions
+        .iter()
+        .map(|m| {
+            let trial = m
+                .name()
+                .rsplit('/')
+                .next()
+                .unwrap()
+                .trim_end_matches(".amc")
+                .to_string();
+            let labels = text
+                .lines()
+                .filter(|l| l.starts_with(&trial))
+                .map(|l| {
+                    let a = l.rsplit(',').next().unwrap().to_string();
+                    if let Some(i) = names.iter().position(|n| *n == a) {
+                        i
+                    } else {
+                        names.push(a);
+                        names.len() - 1
+                    }
+                })
+                .collect();
+            Annotation {
+                labels,
+                rate_hz: 10.0,
+            }
+        })
+        .collect();
+    use kineme::derivation::*;
+    use kineme::segmentation::Segmenter;
+    for rate in [120.0, 60.0] {
+        let motions: Vec<kineme::Motion> = set
+            .motions
+            .iter()
+            .map(|m| m.resampled(rate).unwrap())
+            .collect();
+        for seg in ["pendulum", "zfunction", "changepoint"] {
+            for (k, size) in [(3, 3), (4, 3), (5, 3), (3, 4), (5, 5)] {
+                for (rule, tn, ls) in [
+                    (kineme::embedding::TemporalRule::Forward, 1, 0),
+                    (kineme::embedding::TemporalRule::Forward, 1, 5),
+                    (kineme::embedding::TemporalRule::Known, 2, 5),
+                    (kineme::embedding::TemporalRule::Known, 2, 0),
+                ] {
+                    let mut d = Derivation::new(Cut::Segmenter {
+                        segmenter: Segmenter::named(seg).unwrap(),
+                        target_secs: None,
+                    });
+                    d.neighbours = Some(k);
+                    d.min_group = Some(size);
+                    d.rule = Some(rule);
+                    d.temporal_neighbours = Some(tn * k);
+                    d.local_scale = ls;
+                    let r = d.run(&motions, &mut |_| {}).unwrap();
+                    let (p, b) = frame_scores(&r, &motions, &truth);
+                    println!(
+                        "{rate} {seg} K{k} size{size} {rule:?} x{tn} ls{ls}: {} segments, {} groups noise {:.2}, level1 {:.3} level2 {:.3} ({} behaviours, largest {:.2})",
+                        r.segments.len(),
+                        p.groups,
+                        p.noise,
+                        p.ari,
+                        b.ari,
+                        b.groups,
+                        r.behaviors.largest_share
+                    );
+                }
             }
         }
     }

@@ -163,7 +163,7 @@ impl<'a> Clips<'a> {
     /// # Errors
     /// When clustering refuses its settings.
     pub fn dtw_hdbscan(&self, size: usize) -> Result<Score> {
-        let labels = hdbscan(&self.distances, &density(size))?;
+        let labels = hdbscan(&self.distances, &Density::of_size(size))?;
         Ok(Score::of(&labels, &self.set.labels))
     }
 
@@ -180,7 +180,7 @@ impl<'a> Clips<'a> {
         };
         let (embedding, _) = embed(&graph, &options)?;
         let distances = DistanceMatrix::euclidean(&embedding.coordinates, embedding.dimension)?;
-        let labels = hdbscan(&distances, &density(size))?;
+        let labels = hdbscan(&distances, &Density::of_size(size))?;
         Ok(Score::of(&labels, &self.set.labels))
     }
 
@@ -199,13 +199,6 @@ impl<'a> Clips<'a> {
     /// Numbers a frame of the features.
     pub fn dims(&self) -> usize {
         self.dims
-    }
-}
-
-fn density(size: usize) -> Density {
-    Density {
-        min_cluster_size: size,
-        min_samples: size,
     }
 }
 

@@ -67,10 +67,7 @@ const LIMITS: [usize; 5] = [1, 2, 4, 8, 16];
 ///
 /// # Errors
 /// As [`hdbscan`].
-pub fn hdbscan_judged(
-    distances: &DistanceMatrix,
-    density: &Density,
-) -> Result<Vec<Option<usize>>> {
+pub fn hdbscan_judged(distances: &DistanceMatrix, density: &Density) -> Result<Vec<Option<usize>>> {
     check(density)?;
     let len = distances.len();
     if len < density.min_cluster_size {
@@ -91,7 +88,10 @@ pub fn hdbscan_judged(
         .collect::<Result<_>>()?;
     let mut best: Option<(f64, Vec<Option<usize>>)> = None;
     for (quality, labels) in tried {
-        if best.as_ref().is_none_or(|(most, _)| quality > *most + 1e-12) {
+        if best
+            .as_ref()
+            .is_none_or(|(most, _)| quality > *most + 1e-12)
+        {
             best = Some((quality, labels));
         }
     }

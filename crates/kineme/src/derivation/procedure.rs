@@ -68,12 +68,13 @@ pub struct Derivation {
     pub cut: Cut,
     /// What they are compared by.
     pub features: Features,
-    /// K, the size of a neighbourhood; `None`: 3 for strokes that a segmenter found, 8 for clips and marks.
+    /// K, the size of a neighbourhood; `None`: 4 for strokes that a segmenter found, 8 for clips and marks.
     pub neighbours: Option<usize>,
-    /// How many nearest may be common temporal neighbours; `None`: twice K.
+    /// How many nearest may be common temporal neighbours; `None`: K for strokes, twice K for clips and marks.
     pub temporal_neighbours: Option<usize>,
-    /// What makes a neighbour a common temporal one.
-    pub rule: TemporalRule,
+    /// What makes a neighbour a common temporal one; `None`: the successor for strokes, for clips and marks both sides
+    /// as far as both segments have them.
+    pub rule: Option<TemporalRule>,
     /// Distances are scaled by those to the nearest of this rank; 0 for plain distances.
     pub local_scale: usize,
     /// The smallest group; `None`: 3 for strokes, 5 for clips and marks.
@@ -96,7 +97,7 @@ impl Derivation {
             features: Features::default(),
             neighbours: None,
             temporal_neighbours: None,
-            rule: TemporalRule::Known,
+            rule: None,
             local_scale: 5,
             min_group: None,
             c_ctn: 100.0,
@@ -113,12 +114,24 @@ impl Derivation {
     /// K as it will be used.
     pub fn neighbours(&self) -> usize {
         self.neighbours
-            .unwrap_or(if self.strokes() { 3 } else { 8 })
+            .unwrap_or(if self.strokes() { 4 } else { 8 })
     }
 
-    /// How many nearest may be common temporal neighbours.
+    /// How many nearest may be common temporal neighbours, as it will be used.
     pub fn temporal_neighbours(&self) -> usize {
-        self.temporal_neighbours.unwrap_or(2 * self.neighbours())
+        let sides = if self.strokes() { 1 } else { 2 };
+        self.temporal_neighbours
+            .unwrap_or(sides * self.neighbours())
+    }
+
+    /// What makes a neighbour a common temporal one, as it will be used.
+    pub fn rule(&self) -> TemporalRule {
+        let automatic = if self.strokes() {
+            TemporalRule::Forward
+        } else {
+            TemporalRule::Known
+        };
+        self.rule.unwrap_or(automatic)
     }
 
     /// The smallest group as it will be used.
@@ -271,7 +284,7 @@ impl Derivation {
             neighbours: self.neighbours(),
             temporal_neighbours: Some(self.temporal_neighbours()),
             c_ctn: self.c_ctn,
-            rule: self.rule,
+            rule: self.rule(),
             ..SpatioTemporal::default()
         };
         let graph = match (&distances, self.local_scale) {

@@ -69,22 +69,24 @@ impl NeighbourGraph {
         let nearest = ranked.first().map(|e| e.1).ok_or_else(|| {
             Error::invalid("a new item needs a finite distance to at least one item")
         })?;
-        let shortened = ranked.into_iter().enumerate().filter_map(|(rank, (y, distance))| {
-            let forward = near_next
-                .as_ref()
-                .zip(successors[y])
-                .map(|(near, next)| near.contains(&next));
-            let before = successors.iter().position(|next| *next == Some(y));
-            let backward = near_previous
-                .as_ref()
-                .zip(before)
-                .map(|(near, before)| near.contains(&before));
-            let common = rank < wide
-                && distance <= self.reach
-                && options.rule.holds(forward, backward);
-            let divisor = if common { options.c_ctn } else { 1.0 };
-            (rank < options.neighbours || common).then_some((y, distance / divisor))
-        });
+        let shortened = ranked
+            .into_iter()
+            .enumerate()
+            .filter_map(|(rank, (y, distance))| {
+                let forward = near_next
+                    .as_ref()
+                    .zip(successors[y])
+                    .map(|(near, next)| near.contains(&next));
+                let before = successors.iter().position(|next| *next == Some(y));
+                let backward = near_previous
+                    .as_ref()
+                    .zip(before)
+                    .map(|(near, before)| near.contains(&before));
+                let common =
+                    rank < wide && distance <= self.reach && options.rule.holds(forward, backward);
+                let divisor = if common { options.c_ctn } else { 1.0 };
+                (rank < options.neighbours || common).then_some((y, distance / divisor))
+            });
         Ok(Links {
             edges: shortened.collect(),
             nearest,

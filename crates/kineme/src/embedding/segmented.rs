@@ -182,9 +182,8 @@ impl NeighbourGraph {
             .zip(median(&nearest))
             .map_or(f64::INFINITY, |(r, m)| r * m);
         let near_in_time = near.truncated(wide);
-        let follow = |x: Option<usize>, y: Option<usize>| {
-            x.zip(y).map(|(x, y)| near_in_time.contains(x, y))
-        };
+        let follow =
+            |x: Option<usize>, y: Option<usize>| x.zip(y).map(|(x, y)| near_in_time.contains(x, y));
         let mut marks: Vec<Mark> = (0..len)
             .into_par_iter()
             .flat_map_iter(|x| {

@@ -24,7 +24,9 @@ pub fn locally_scaled(distances: &DistanceMatrix, k: usize) -> Result<DistanceMa
         })
         .collect();
     let scales = guarded(scales, k)?;
-    DistanceMatrix::from_fn(len, |i, j| distances.get(i, j) / (scales[i] * scales[j]).sqrt())
+    DistanceMatrix::from_fn(len, |i, j| {
+        distances.get(i, j) / (scales[i] * scales[j]).sqrt()
+    })
 }
 
 /// The same for lists of candidates, which stay as long as they are.
@@ -46,7 +48,9 @@ pub fn locally_scaled_lists(lists: &Neighbours, k: usize) -> Result<Neighbours> 
 
 fn guarded(scales: Vec<f64>, k: usize) -> Result<Vec<f64>> {
     if k == 0 {
-        return Err(Error::invalid("local scaling needs at least the nearest neighbour"));
+        return Err(Error::invalid(
+            "local scaling needs at least the nearest neighbour",
+        ));
     }
     let least = super::statistics::median(&scales).unwrap_or(1.0) * LEAST_SHARE;
     let least = if least > 0.0 { least } else { 1.0 };
