@@ -100,17 +100,21 @@ impl Anatomy {
             None => (neck, hips.as_slice()),
         };
         let mut parts = BTreeMap::new();
+        let resting = Resting::of(marks);
         // The line of the hips is rigid, so the pelvis follows it exactly; shoulders shrug, so the thorax follows the spine.
-        let pelvis = frames(marks.frames, |f| {
-            frame_y_z(&(left_hip[f] - right_hip[f]), &(top_of_pelvis[f] - hips[f]))
-        });
+        // Where rigs put the hips before or behind the spine differs; a standing zero pose says what upright is.
+        let pelvis = match (marks.rotations.get(&Role::Hips), &resting) {
+            (Some(own), Some(rest)) => own.iter().map(|q| q * rest.frame).collect(),
+            _ => frames(marks.frames, |f| {
+                frame_y_z(&(left_hip[f] - right_hip[f]), &(top_of_pelvis[f] - hips[f]))
+            }),
+        };
         let thorax = frames(marks.frames, |f| {
             frame_z_y(
                 &(neck[f] - bottom_of_thorax[f]),
                 &(left_arm[f] - right_arm[f]),
             )
         });
-        let resting = Resting::of(marks);
         if let Some(head) = head(marks, &thorax, neck, resting.as_ref()) {
             parts.insert(Role::Head, head);
         }
@@ -331,7 +335,8 @@ fn end_part(
         true => r
             .bone(limb.end, limb.tip)
             .or_else(|| r.bone(limb.lower, limb.end)),
-        false => Some(r.frame),
+        // Legs may be spread at rest, and the feet with them.
+        false => r.bone(limb.lower, limb.end),
     });
     Some(oriented(own, rest, pointed.as_deref().unwrap_or(lower)))
 }
