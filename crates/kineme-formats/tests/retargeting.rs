@@ -39,7 +39,12 @@ fn map(recording: &Recording) -> RoleMap {
 }
 
 /// Angles in degrees between the source's and the body's bones, every `step`-th frame.
-fn bone_angles(recording: &Recording, motion: &Motion, bones: &[(Role, Role)], step: usize) -> Vec<f64> {
+fn bone_angles(
+    recording: &Recording,
+    motion: &Motion,
+    bones: &[(Role, Role)],
+    step: usize,
+) -> Vec<f64> {
     let roles = map(recording).joints;
     let body = motion.skeleton();
     let joint = |r: Role| body.joints_of(r)[0];
@@ -78,7 +83,11 @@ fn limbs_keep_their_directions_on_every_whole_body_file() {
     };
     let inputs = Inputs::resolve(&[data.join("mocap")], &options).expect("inputs");
     // Release looks at every file, debug at some of every kind.
-    let (files, step) = if cfg!(debug_assertions) { (23, 9) } else { (1, 3) };
+    let (files, step) = if cfg!(debug_assertions) {
+        (23, 9)
+    } else {
+        (1, 3)
+    };
     for (body, bones) in [("ares", &BONES[..]), ("adonis", &BONES[..4])] {
         let body = Arc::new(kineme::body(body).expect("a body"));
         let all: Vec<Vec<f64>> = inputs
@@ -111,9 +120,14 @@ fn limbs_keep_their_directions_on_every_whole_body_file() {
 fn rms(a: &Motion, b: &Motion, frames: &[(usize, usize)], of: &[usize]) -> f64 {
     let squares: f64 = frames
         .iter()
-        .flat_map(|&(i, j)| of.iter().map(move |&c| (a.pose(i)[c] - b.pose(j)[c]).powi(2)))
+        .flat_map(|&(i, j)| {
+            of.iter()
+                .map(move |&c| (a.pose(i)[c] - b.pose(j)[c]).powi(2))
+        })
         .sum();
-    (squares / (frames.len() * of.len()) as f64).sqrt().to_degrees()
+    (squares / (frames.len() * of.len()) as f64)
+        .sqrt()
+        .to_degrees()
 }
 
 /// Coordinates of joints, by joint name.
@@ -134,15 +148,31 @@ fn three_conversions_of_one_trial_agree_in_body_coordinates() {
         };
         let amc = motion(format!("cmu-asfamc.zip/cmu-asfamc/02/{trial}.amc")).motion;
         let mb = motion(format!("cmu-mb.zip/cmu-mb/02/{trial}.bvh")).motion;
-        let lifeforms = motion(format!("cmu-lifeforms.zip/cmu-lifeforms/002/002_{}.bvh", &trial[3..])).motion;
+        let lifeforms = motion(format!(
+            "cmu-lifeforms.zip/cmu-lifeforms/002/002_{}.bvh",
+            &trial[3..]
+        ))
+        .motion;
         // Frame 0 of both BVHs is an added T-pose; the third runs at half the rate.
         let n = amc.frames();
-        let whole: Vec<(usize, usize)> = (0..n).map(|i| (i, i + 1)).filter(|p| p.1 < mb.frames()).collect();
-        let half: Vec<(usize, usize)> = (0..n / 2).map(|i| (2 * i, i + 1)).filter(|p| p.1 < lifeforms.frames()).collect();
+        let whole: Vec<(usize, usize)> = (0..n)
+            .map(|i| (i, i + 1))
+            .filter(|p| p.1 < mb.frames())
+            .collect();
+        let half: Vec<(usize, usize)> = (0..n / 2)
+            .map(|i| (2 * i, i + 1))
+            .filter(|p| p.1 < lifeforms.frames())
+            .collect();
         let all: Vec<usize> = (0..body.dof()).collect();
-        for (name, other, frames) in [("motionbuilder", &mb, &whole), ("lifeforms", &lifeforms, &half)] {
+        for (name, other, frames) in [
+            ("motionbuilder", &mb, &whole),
+            ("lifeforms", &lifeforms, &half),
+        ] {
             let total = rms(&amc, other, frames, &all);
-            println!("{trial} {name}: {total:.2} degrees over {} frames", frames.len());
+            println!(
+                "{trial} {name}: {total:.2} degrees over {} frames",
+                frames.len()
+            );
             for (joint, of) in coordinates(&body, |_| true) {
                 let one = rms(&amc, other, frames, &of);
                 if one > 3.0 {
