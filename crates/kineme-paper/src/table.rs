@@ -178,8 +178,8 @@ fn continuous(
             row(name, &settings)?;
             continue;
         }
-        row("**pendulum, alternation (the default: K 4)**", &settings)?;
-        for k in [3, 5, 6] {
+        row("**pendulum, alternation (the default: K 3)**", &settings)?;
+        for k in [4, 5, 6] {
             settings.neighbours = Some(k);
             row(&format!("pendulum, alternation, K {k}"), &settings)?;
         }

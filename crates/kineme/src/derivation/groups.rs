@@ -105,7 +105,10 @@ pub(super) fn behaviors(
     size: (usize, usize),
 ) -> Result<Behaviors> {
     let of_group = match level {
-        SecondLevel::Alternation => alternation(transitions),
+        SecondLevel::Alternation => {
+            let sizes: Vec<usize> = groups.iter().map(|g| g.segments.len()).collect();
+            alternation(transitions, &sizes)
+        }
         SecondLevel::Isomap => second_isomap(
             &embedding.coordinates,
             embedding.dimension,

@@ -68,15 +68,16 @@ pub struct Derivation {
     pub cut: Cut,
     /// What they are compared by.
     pub features: Features,
-    /// K, the size of a neighbourhood; `None`: 4 for strokes that a segmenter found, 8 for clips and marks.
+    /// K, the size of a neighbourhood; `None`: 3 for strokes that a segmenter found, 8 for clips and marks.
     pub neighbours: Option<usize>,
     /// How many nearest may be common temporal neighbours; `None`: K for strokes, twice K for clips and marks.
     pub temporal_neighbours: Option<usize>,
     /// What makes a neighbour a common temporal one; `None`: the successor for strokes, for clips and marks both sides
     /// as far as both segments have them.
     pub rule: Option<TemporalRule>,
-    /// Distances are scaled by those to the nearest of this rank; 0 for plain distances.
-    pub local_scale: usize,
+    /// Distances are scaled by those to the nearest of this rank, 0 for plain distances; `None`: plain for strokes, by the
+    /// fifth for clips and marks, which come from many people.
+    pub local_scale: Option<usize>,
     /// The smallest group; `None`: 3 for strokes, 5 for clips and marks.
     pub min_group: Option<usize>,
     /// Divisor of distances between common temporal neighbours.
@@ -98,7 +99,7 @@ impl Derivation {
             neighbours: None,
             temporal_neighbours: None,
             rule: None,
-            local_scale: 5,
+            local_scale: None,
             min_group: None,
             c_ctn: 100.0,
             clustering: Clustering::default(),
@@ -114,7 +115,7 @@ impl Derivation {
     /// K as it will be used.
     pub fn neighbours(&self) -> usize {
         self.neighbours
-            .unwrap_or(if self.strokes() { 4 } else { 8 })
+            .unwrap_or(if self.strokes() { 3 } else { 8 })
     }
 
     /// How many nearest may be common temporal neighbours, as it will be used.
@@ -132,6 +133,11 @@ impl Derivation {
             TemporalRule::Known
         };
         self.rule.unwrap_or(automatic)
+    }
+
+    /// The rank of the neighbour that distances are scaled by, as it will be used; 0 for plain distances.
+    pub fn local_scale(&self) -> usize {
+        self.local_scale.unwrap_or(if self.strokes() { 0 } else { 5 })
     }
 
     /// The smallest group as it will be used.
@@ -287,7 +293,7 @@ impl Derivation {
             rule: self.rule(),
             ..SpatioTemporal::default()
         };
-        let graph = match (&distances, self.local_scale) {
+        let graph = match (&distances, self.local_scale()) {
             (SegmentDistances::All(matrix), 0) => {
                 NeighbourGraph::segmented(matrix, &successors, &options)?
             }
