@@ -130,8 +130,8 @@ fn read(s: &LimbSample, kind: &LimbKind, has_source: bool, noise: f64, rate_hz: 
     let normal = s.upper.cross(&s.lower) * if kind.bends_forward { -1.0 } else { 1.0 };
     let flexion = normal.norm().atan2(s.upper.dot(&s.lower));
     let bent = BENT.max((noise / NOISE_ACCEPTED).min(0.78).asin());
-    // A limb folded up has no better plane than a straight one.
-    let open = flexion.min(std::f64::consts::PI - flexion);
+    // A limb folded up has no plane either; but folded joints are better hinges than straight ones.
+    let open = flexion.min(2.0 * (std::f64::consts::PI - flexion));
     // Straight down the usual frame is the neutral one, elsewhere the middle of the range.
     let hanging = twist_angle(&untwisted(&down).inverse(), &z) * direction.dot(&down).max(0.0);
     let mut usual = wrap(hanging - source);
