@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use super::track::Track;
 use crate::error::{Error, Result};
+use crate::math::rotation::{exp, log_near};
 use crate::skeleton::{Frame, Root, Skeleton};
 
 /// A movement of one body at one rate: poses, and beside them where the body stands. Finite, at least one pose.
@@ -138,6 +139,7 @@ impl Motion {
     }
 
     /// The motion at another rate, coordinates interpolated linearly; the first frame stays at time zero.
+    /// A ball whose two names for a rotation change between frames is interpolated the short way.
     ///
     /// # Errors
     /// When the rate is not positive.
@@ -150,6 +152,10 @@ impl Motion {
         let last = self.frames() - 1;
         let count = ((last as f64 / self.rate_hz) * rate_hz + 1e-9).floor() as usize + 1;
         let dof = self.skeleton.dof();
+        let balls: Vec<_> = (0..self.skeleton.joints().len())
+            .map(|j| self.skeleton.coordinates(j))
+            .filter(|at| at.len() == 3)
+            .collect();
         let mut poses = Vec::with_capacity(count * dof);
         let mut roots = Vec::with_capacity(count);
         for i in 0..count {
@@ -164,12 +170,22 @@ impl Motion {
             let b = (a + 1).min(last);
             let s = place - a as f64;
             let blend = |x: f64, y: f64| x + (y - x) * s;
+            let first = poses.len();
             poses.extend(
                 self.pose(a)
                     .iter()
                     .zip(self.pose(b))
                     .map(|(x, y)| blend(*x, *y)),
             );
+            for ball in &balls {
+                let at = |f: usize| Vector3::from_column_slice(&self.pose(f)[ball.clone()]);
+                let (x, y) = (at(a), at(b));
+                if (y - x).norm() > std::f64::consts::PI {
+                    let v = x + (log_near(&exp(&y), &x) - x) * s;
+                    let v = if s < 0.5 { v } else { log_near(&exp(&v), &y) };
+                    poses[first + ball.start..first + ball.end].copy_from_slice(v.as_slice());
+                }
+            }
             let (ra, rb) = (self.root(a), self.root(b));
             roots.push(Root {
                 position: ra.position + (rb.position - ra.position) * s,

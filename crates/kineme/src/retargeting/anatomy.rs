@@ -16,6 +16,9 @@ use crate::skeleton::{JointKind, Role, Skeleton};
 /// Length of thigh and shank over that of the trunk from hips to suprasternale (de Leva 1996, men).
 const TRUNKS_A_LEG: f64 = (0.4222 + 0.4340) / 0.5319;
 
+/// The most (radians) that a hand or foot known from a point swings away from forearm or shank.
+const SWING: f64 = 1.75;
+
 type Turns = Vec<UnitQuaternion<f64>>;
 
 /// World orientation of each observed part at each frame, keyed by the role that moves it (`Chest` is the thorax).
@@ -325,7 +328,10 @@ fn end_part(
         .map(|(end, tip)| {
             frames(marks.frames, |f| {
                 let direction = (tip[f] - end[f]).try_normalize(1e-6)?;
-                Some(shortest(&(lower[f] * ahead), &direction) * lower[f])
+                let swing = shortest(&(lower[f] * ahead), &direction);
+                // Points of hands and feet lie so near wrist and ankle that noise may turn them round.
+                let share = (SWING / swing.angle().max(SWING)).min(1.0);
+                Some(swing.powf(share) * lower[f])
             })
         });
     let Some(own) = marks.rotations.get(&limb.end) else {
