@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use kineme::Motion;
 use kineme::clustering::{Density, hdbscan};
-use kineme::derivation::{Clustering, Cut, Derivation, Derived, Segment, SegmentDistances};
-use kineme::embedding::{EmbedOptions, Geodesics, NeighbourGraph, SpatioTemporal, embed};
+use kineme::derivation::{Cut, Derivation, Derived, Segment, SegmentDistances};
+use kineme::embedding::{EmbedOptions, NeighbourGraph, SpatioTemporal, embed};
 use kineme::math::distances::DistanceMatrix;
 use kineme::math::statistics::{agreement, noise_as_singletons};
 use rand::seq::SliceRandom;
@@ -21,7 +21,6 @@ pub struct Clips<'a> {
     settings: Derivation,
     sequences: Vec<Vec<f64>>,
     distances: DistanceMatrix,
-    dims: usize,
 }
 
 /// Agreement of found groups with the hidden classes.
@@ -82,43 +81,37 @@ impl<'a> Clips<'a> {
             settings,
             sequences,
             distances,
-            dims,
         })
     }
-
     /// Groups of the clips strung in this order.
     ///
     /// # Errors
     /// When a step of the derivation fails.
     pub fn derive(&self, order: Order, seed: u64) -> Result<Derived> {
-        let mut segments = separate(&self.set.motions);
-        for pair in self.order(order, seed).windows(2) {
-            segments[pair[0]].successor = Some(pair[1]);
-        }
-        let distances = SegmentDistances::All(self.distances.clone());
-        Ok(self
-            .settings
-            .group_by(distances, &self.sequences, segments, &mut |_| {})?)
+        self.group(self.distances.clone(), order, seed)
     }
 
-    /// The same with the distances permuted at random: what order alone gives.
+    /// Groups in routine order with the distances permuted at random: what order alone gives.
     ///
     /// # Errors
     /// When a step of the derivation fails.
     pub fn derive_shuffled(&self, seed: u64) -> Result<Derived> {
         let mut upper = self.distances.upper().to_vec();
-        let mut random = Pcg64::seed_from_u64(seed ^ 0x5eed);
-        upper.shuffle(&mut random);
+        upper.shuffle(&mut Pcg64::seed_from_u64(seed ^ 0x5eed));
+        let shuffled = DistanceMatrix::from_upper(self.distances.len(), upper)?;
+        self.group(shuffled, Order::Routine, seed)
+    }
 
-        let distances = DistanceMatrix::from_upper(self.distances.len(), upper)?;
+    fn group(&self, distances: DistanceMatrix, order: Order, seed: u64) -> Result<Derived> {
         let mut segments = separate(&self.set.motions);
-        for pair in self.order(Order::Routine, seed).windows(2) {
+        for pair in self.order(order, seed).windows(2) {
             segments[pair[0]].successor = Some(pair[1]);
         }
         let distances = SegmentDistances::All(distances);
+        let watch = &mut |_| {};
         Ok(self
             .settings
-            .group_by(distances, &self.sequences, segments, &mut |_| {})?)
+            .group_by(distances, &self.sequences, segments, watch)?)
     }
 
     /// Items in the order of a performance; empty where each stands alone.
@@ -163,7 +156,7 @@ impl<'a> Clips<'a> {
     /// # Errors
     /// When clustering refuses its settings.
     pub fn dtw_hdbscan(&self, size: usize) -> Result<Score> {
-        let labels = hdbscan(&self.distances, &density(size))?;
+        let labels = hdbscan(&self.distances, &Density::of_size(size))?;
         Ok(Score::of(&labels, &self.set.labels))
     }
 
@@ -180,7 +173,7 @@ impl<'a> Clips<'a> {
         };
         let (embedding, _) = embed(&graph, &options)?;
         let distances = DistanceMatrix::euclidean(&embedding.coordinates, embedding.dimension)?;
-        let labels = hdbscan(&distances, &density(size))?;
+        let labels = hdbscan(&distances, &Density::of_size(size))?;
         Ok(Score::of(&labels, &self.set.labels))
     }
 
@@ -189,23 +182,6 @@ impl<'a> Clips<'a> {
         let labels = kmeans(&self.sequences, self.set.classes.len(), seed);
         let labels: Vec<Option<usize>> = labels.into_iter().map(Some).collect();
         Score::of(&labels, &self.set.labels)
-    }
-
-    /// The derivation's settings, to vary.
-    pub fn settings_mut(&mut self) -> &mut Derivation {
-        &mut self.settings
-    }
-
-    /// Numbers a frame of the features.
-    pub fn dims(&self) -> usize {
-        self.dims
-    }
-}
-
-fn density(size: usize) -> Density {
-    Density {
-        min_cluster_size: size,
-        min_samples: size,
     }
 }
 
@@ -289,58 +265,4 @@ pub fn frame_scores(derived: &Derived, motions: &[Motion], truth: &[Annotation])
             derived.behaviors.items.len(),
         ),
     )
-}
-
-/// The settings of sweep-and-prune in place of HDBSCAN, as the paper has it.
-pub fn as_published(mut settings: Derivation) -> Derivation {
-    settings.clustering = Clustering::SweepAndPrune;
-    settings
-}
-
-/// Whether all items were followed: the geodesics of a set this small always are.
-pub fn dense(geodesics: &Geodesics) -> bool {
-    matches!(geodesics, Geodesics::All(_))
-}
-
-impl Clips<'_> {
-    /// dump
-    pub fn dump(&self, path: &str) {
-        use std::io::Write;
-        let n = self.distances.len();
-        let mut f = std::io::BufWriter::new(std::fs::File::create(path).unwrap());
-        writeln!(
-            f,
-            "{}",
-            self.set
-                .labels
-                .iter()
-                .map(|l| l.to_string())
-                .collect::<Vec<_>>()
-                .join(" ")
-        )
-        .unwrap();
-        for i in 0..n {
-            writeln!(
-                f,
-                "{}",
-                (0..n)
-                    .map(|j| format!("{:.6}", self.distances.get(i, j)))
-                    .collect::<Vec<_>>()
-                    .join(" ")
-            )
-            .unwrap();
-        }
-        let mut f = std::io::BufWriter::new(std::fs::File::create(format!("{path}.seq")).unwrap());
-        for s in &self.sequences {
-            writeln!(
-                f,
-                "{}",
-                s.iter()
-                    .map(|v| format!("{v:.5}"))
-                    .collect::<Vec<_>>()
-                    .join(" ")
-            )
-            .unwrap();
-        }
-    }
 }

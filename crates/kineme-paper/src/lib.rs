@@ -3,3 +3,4 @@
 pub mod derivation;
 mod kmeans;
 pub mod sets;
+pub mod table;

@@ -1,19 +1,18 @@
 //! Labelled sets of recordings: their classes come from the corpus' index, never from the motion.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use kineme::retargeting::retarget;
 use kineme::{Motion, Skeleton};
+use kineme_formats::input::{Entry, Inputs, ReadOptions};
 use kineme_formats::{FormatError, Place};
 use rayon::prelude::*;
 
 /// Motions of one body with their classes.
 #[derive(Debug, Clone)]
 pub struct LabelledSet {
-    /// Name of the set.
-    pub name: String,
     /// The motions.
     pub motions: Vec<Motion>,
     /// The class of each motion, an index into `classes`.
@@ -37,7 +36,17 @@ pub struct IndexRow {
     pub notes: String,
 }
 
-/// What a corpus cannot give.
+impl IndexRow {
+    /// The value of `content=` in the notes, else the label.
+    pub fn content(&self) -> &str {
+        let note = self.notes.split(';').map(str::trim);
+        note.filter_map(|n| n.strip_prefix("content="))
+            .next()
+            .unwrap_or(&self.label)
+    }
+}
+
+/// Whatever a corpus cannot give.
 pub type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
 /// The index of a corpus folder: `index.csv`.
@@ -46,26 +55,16 @@ pub type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + S
 /// When the file is missing or lacks a column.
 pub fn index(corpus: &Path) -> Result<Vec<IndexRow>> {
     let path = corpus.join("index.csv");
+    let shown = path.display().to_string();
     let mut reader = csv::Reader::from_path(&path).map_err(|e| {
-        FormatError::new(
-            path.display().to_string(),
-            Place::File,
-            e.to_string(),
-            "the index of the corpus",
-        )
+        FormatError::new(&shown, Place::File, e.to_string(), "the index of a corpus")
     })?;
     let headers = reader.headers()?.clone();
     let column = |name: &str| {
         headers.iter().position(|h| h == name).ok_or_else(|| {
-            FormatError::new(
-                path.display().to_string(),
-                Place::Line(1),
-                format!(
-                    "the columns {}",
-                    headers.iter().collect::<Vec<_>>().join(", ")
-                ),
-                format!("a column `{name}`"),
-            )
+            let found: Vec<&str> = headers.iter().collect();
+            let wanted = format!("a column `{name}`");
+            FormatError::new(&shown, Place::Line(1), found.join(","), wanted)
         })
     };
     let columns = [
@@ -91,20 +90,42 @@ pub fn index(corpus: &Path) -> Result<Vec<IndexRow>> {
     Ok(rows)
 }
 
-/// The motions of an archive's rows, retargeted to `body`, with the class that `class` reads off each row.
+/// The motions of these rows, retargeted to `body`, with the class that `class` reads off each row. `asf` serves AMC
+/// files that have no skeleton beside them.
 ///
 /// # Errors
-/// When a file cannot be read or retargeted.
+/// When a file is not in the corpus, cannot be read or cannot be retargeted.
 pub fn load(
-    name: &str,
     corpus: &Path,
-    rows: &[IndexRow],
+    rows: &[&IndexRow],
     body: &Arc<Skeleton>,
+    asf: Option<&str>,
     class: &(dyn Fn(&IndexRow) -> String + Sync),
 ) -> Result<LabelledSet> {
-    let read = |row: &IndexRow| -> Result<(Motion, String)> {
-        let recording = read(corpus, row)?;
-        Ok((retarget(&recording, body, None)?.motion, class(row)))
+    let options = ReadOptions {
+        asf: asf.map(|a| corpus.join(a)),
+        ..ReadOptions::default()
+    };
+    let mut archives: Vec<&str> = rows.iter().map(|r| r.archive.as_str()).collect();
+    archives.sort_unstable();
+    archives.dedup();
+    let paths: Vec<_> = archives.iter().map(|a| corpus.join(a)).collect();
+    let inputs = Inputs::resolve(&paths, &options)?;
+    let entries: BTreeMap<&str, &Entry> = inputs
+        .entries
+        .iter()
+        .filter_map(|e| Some((e.name().split_once(".zip/")?.1, e)))
+        .collect();
+    let read = |row: &&IndexRow| -> Result<(Motion, String)> {
+        let entry = entries.get(row.file.as_str()).ok_or_else(|| {
+            FormatError::new(
+                &row.file,
+                Place::File,
+                "no such file",
+                "the file in its archive",
+            )
+        })?;
+        Ok((retarget(&entry.read()?, body, None)?.motion, class(row)))
     };
     let loaded: Vec<(Motion, String)> = rows.par_iter().map(read).collect::<Result<_>>()?;
     let mut classes: BTreeMap<String, usize> = BTreeMap::new();
@@ -116,41 +137,8 @@ pub fn load(
     }
     let (motions, names): (Vec<Motion>, Vec<String>) = loaded.into_iter().unzip();
     Ok(LabelledSet {
-        name: name.into(),
         labels: names.iter().map(|n| classes[n]).collect(),
         classes: classes.into_keys().collect(),
         motions,
-    })
-}
-
-fn read(corpus: &Path, row: &IndexRow) -> Result<kineme::Recording> {
-    let path: PathBuf = PathBuf::from("/tmp/d").join(&row.file);
-    let _ = corpus;
-    let bytes = std::fs::read(&path)?;
-    let name = row.file.as_str();
-    use kineme_formats::{asf, detect, tables};
-    Ok(match row.format.as_str() {
-        "joints-csv" => tables::positions::parse(name, &bytes, Some(30.0))?,
-        "amc" => {
-            let stem = Path::new(name)
-                .file_stem()
-                .unwrap()
-                .to_string_lossy()
-                .to_string();
-            let asf_path = if name.starts_with("hdm05") {
-                format!("/tmp/d/hdm05/{}.asf", &stem[..6])
-            } else {
-                "/tmp/d/cmu-asfamc/02/02.asf".to_string()
-            };
-            let skeleton = asf::parse(&asf_path, &std::fs::read(&asf_path)?)?;
-            detect::parse(
-                detect::Kind::Amc,
-                name,
-                &bytes,
-                Some(120.0),
-                Some(&skeleton),
-            )?
-        }
-        _ => detect::parse(detect::Kind::Bvh, name, &bytes, None, None)?,
     })
 }

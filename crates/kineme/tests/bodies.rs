@@ -275,6 +275,38 @@ fn coordinates_are_zero_in_the_middle_of_the_range_and_far_from_a_half_turn() {
     }
 }
 
+#[test]
+fn coordinates_follow_a_turn_past_pi_but_not_for_ever() {
+    let [_, ares] = bodies();
+    let ankle = ares.joint("left_ankle").expect("a joint");
+    let at = ares.coordinates(ankle);
+    let mut before = ares.neutral();
+    for step in 0..=63 {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), 0.1 * f64::from(step));
+        let mut pose = before.clone();
+        let taken = ares.set_rotation(&mut pose, ankle, &turn, Some(&before));
+        assert!(
+            taken.angle_to(&turn) < 1e-9,
+            "the rotation itself is exact at {step}"
+        );
+        let c = Vector3::from_column_slice(&pose[at.clone()]);
+        let b = Vector3::from_column_slice(&before[at.clone()]);
+        assert!(c.norm() < 3.8, "step {step}: {c:?}");
+        assert!(
+            (c - b).norm() < 0.2 || b.norm() > 3.6,
+            "step {step}: {b:?} to {c:?}"
+        );
+        before = pose;
+    }
+    let neutral = ares.neutral();
+    for c in at {
+        assert!(
+            (before[c] - neutral[c]).abs() < 0.1,
+            "after a whole turn it is where it was"
+        );
+    }
+}
+
 /// One clinical movement, and the displacement of a point of a joint's frame that it must cause, as signs or exactly.
 struct Movement {
     role: Role,

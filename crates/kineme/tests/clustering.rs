@@ -39,6 +39,7 @@ fn hdbscan_equals_scikit_learn() {
             let density = Density {
                 min_cluster_size: size("min_cluster_size"),
                 min_samples: size("min_samples"),
+                ..Density::default()
             };
             let labels = hdbscan(&distances, &density).unwrap();
             let truth = expected(row);
@@ -229,6 +230,7 @@ fn duplicates_infinite_distances_and_tiny_input_are_served() {
         let smallest = Density {
             min_cluster_size: 2,
             min_samples: 50,
+            ..Density::default()
         };
         assert_eq!(hdbscan(&few, &Density::default()).unwrap(), vec![None; len]);
         assert_eq!(hdbscan(&few, &smallest).unwrap(), vec![None; len]);
@@ -244,6 +246,7 @@ fn broken_input_is_refused() {
     let of = |min_cluster_size, min_samples| Density {
         min_cluster_size,
         min_samples,
+        ..Density::default()
     };
     let results = [
         ("group of one", hdbscan(&distances, &of(1, 1)).err()),

@@ -111,9 +111,11 @@ proptest! {
     fn common_temporal_neighbours_follow_the_rule(
         seed in 0u64..1000,
         k in 1usize..6,
+        wide in 1usize..9,
         mutual: bool,
         rule in prop::sample::select(vec![
             TemporalRule::Forward, TemporalRule::Backward, TemporalRule::Both, TemporalRule::Either,
+            TemporalRule::Known,
         ]),
     ) {
         let len = 30;
@@ -121,24 +123,14 @@ proptest! {
         // Three recordings of ten.
         let next: Vec<Option<usize>> = (0..len).map(|i| (i % 10 != 9).then_some(i + 1)).collect();
         let before: Vec<Option<usize>> = (0..len).map(|i| (i % 10 != 0).then(|| i - 1)).collect();
-        let options = SpatioTemporal { neighbours: k, c_ctn: 7.0, c_atn: 3.0, rule, mutual, ..SpatioTemporal::default() };
+        let options = SpatioTemporal { neighbours: k, temporal_neighbours: Some(wide), c_ctn: 7.0, c_atn: 3.0, rule, mutual, ..SpatioTemporal::default() };
         let graph = NeighbourGraph::segmented(&distances, &next, &options).unwrap();
-        let near = |i: usize, j: usize| {
+        let among = |i: usize, j: usize, k: usize| {
             let closer = (0..len).filter(|&m| m != i && distances.get(i, m) < distances.get(i, j));
             i != j && closer.count() < k
         };
-        let both = |list: &[Option<usize>], i: usize, j: usize| {
-            list[i].zip(list[j]).is_some_and(|(a, b)| near(a, b))
-        };
-        let common = |i: usize, j: usize| {
-            let (f, b) = (both(&next, i, j), both(&before, i, j));
-            near(i, j) && match rule {
-                TemporalRule::Forward => f,
-                TemporalRule::Backward => b,
-                TemporalRule::Both => f && b,
-                TemporalRule::Either => f || b,
-            }
-        };
+        let near = |i: usize, j: usize| among(i, j, k) || common_of(&among, &next, &before, rule, wide, i, j);
+        let common = |i: usize, j: usize| common_of(&among, &next, &before, rule, wide, i, j);
         let mut expected = Vec::new();
         for (i, following) in next.iter().enumerate() {
             for j in i + 1..len {
@@ -308,4 +300,29 @@ fn broken_input_is_refused() {
     for (what, error) in results {
         assert!(error.is_some_and(|e| e.is_invalid()), "{what}");
     }
+}
+
+/// Whether `j` is a common temporal neighbour of `i`, from the words of the rule.
+fn common_of(
+    among: &dyn Fn(usize, usize, usize) -> bool,
+    next: &[Option<usize>],
+    before: &[Option<usize>],
+    rule: TemporalRule,
+    wide: usize,
+    i: usize,
+    j: usize,
+) -> bool {
+    let side = |list: &[Option<usize>]| list[i].zip(list[j]).map(|(a, b)| among(a, b, wide));
+    let (forward, backward) = (side(next), side(before));
+    let (f, b) = (forward.unwrap_or(false), backward.unwrap_or(false));
+    among(i, j, wide)
+        && match rule {
+            TemporalRule::Forward => f,
+            TemporalRule::Backward => b,
+            TemporalRule::Both => f && b,
+            TemporalRule::Either => f || b,
+            TemporalRule::Known => {
+                (f || forward.is_none()) && (b || backward.is_none()) && (f || b)
+            }
+        }
 }

@@ -315,6 +315,41 @@ fn a_training_item_placed_again_returns_to_its_coordinates() {
 }
 
 #[test]
+fn a_new_item_between_two_lies_between_them() {
+    // On a line geodesics are exact, so is the place.
+    let points: Vec<f64> = (0..21).map(f64::from).collect();
+    let (_, graph) = plain(&points, 1, 2);
+    let own: Vec<f64> = points.iter().map(|p| (p - 8.3).abs()).collect();
+    let item = NewItem {
+        distances: &own,
+        previous: None,
+        next: None,
+    };
+    let links = graph
+        .links(&item, &[None; 21], &SpatioTemporal::isomap(2))
+        .unwrap();
+    for landmarks in [None, Some(12)] {
+        let options = EmbedOptions {
+            landmarks,
+            ..EmbedOptions::default()
+        };
+        let (embedding, geodesics) = embed(&graph, &options).unwrap();
+        let placed = embedding.place(&geodesics, &links).unwrap();
+        let (a, b) = (embedding.point(8)[0], embedding.point(9)[0]);
+        check("place", placed.coordinates[0], a + 0.3 * (b - a), 1e-9);
+    }
+}
+
+#[test]
+fn landmarks_are_distinct_even_where_items_coincide() {
+    let points = [vec![0.0; 6], vec![1.0; 6]].concat();
+    let (_, graph) = plain(&points, 1, 3);
+    let mut chosen = graph.joined().landmark_geodesics(12).unwrap().landmarks;
+    chosen.sort_unstable();
+    assert_eq!(chosen, (0..12).collect::<Vec<_>>());
+}
+
+#[test]
 fn two_threads_give_the_bits_of_one() {
     let points = ring(1300);
     let run = |threads: usize| {

@@ -115,6 +115,33 @@ fn resampling_keeps_time_and_what_is_linear_in_it() {
 }
 
 #[test]
+fn resampling_takes_the_short_way_between_two_names_of_a_rotation() {
+    let body = body();
+    let waist = body.joint("waist").expect("a joint");
+    let at = body.coordinates(waist);
+    let axis = Vector3::new(0.0, 0.6, 0.8);
+    // 200 degrees and its other name just beyond: -158.
+    let (a, b) = (200f64.to_radians(), -158f64.to_radians());
+    let mut poses = vec![0.0; 40];
+    for (k, angle) in [a, b].into_iter().enumerate() {
+        poses[20 * k + at.start..20 * k + at.end].copy_from_slice((axis * angle).as_slice());
+    }
+    let motion =
+        Motion::new("m", body.clone(), 10.0, poses, vec![Root::ORIGIN; 2]).expect("a motion");
+    let found = motion.resampled(40.0).expect("a motion");
+    let start = body.rotation(waist, &found.pose(0)[at.clone()]);
+    for f in 0..found.frames() {
+        let turned = body
+            .rotation(waist, &found.pose(f)[at.clone()])
+            .angle_to(&start);
+        assert!(
+            (turned - 0.5f64.to_radians() * f as f64).abs() < 1e-9,
+            "frame {f}: {turned}"
+        );
+    }
+}
+
+#[test]
 fn effectors_move_as_the_frames_say() {
     let motion = ramp(5, 30.0);
     let (track, joints) = (motion.effectors(), motion.joints());

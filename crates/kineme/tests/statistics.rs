@@ -13,7 +13,8 @@ fn check(found: f64, wanted: f64, what: &str) {
 
 #[test]
 fn partitions_agree_as_the_indices_say() {
-    let cases: [(&str, &[usize], &[usize], f64, f64); 6] = [
+    type Case = (&'static str, &'static [usize], &'static [usize], f64, f64);
+    let cases: [Case; 6] = [
         ("equal", &[0, 0, 1, 1], &[0, 0, 1, 1], 1.0, 1.0),
         ("names do not count", &[0, 0, 1, 1], &[7, 7, 3, 3], 1.0, 1.0),
         // Two pairs against one pair and two singles: 2 * (1 - 1/3) / (3 - 2/3); ln 2 over the mean of ln 2 and 1.5 ln 2.

@@ -4,7 +4,7 @@ use crate::embedding::Embedding;
 use crate::error::Result;
 use crate::primitive::{Behavior, Transitions};
 
-use super::coherence::{silhouettes, simplified_silhouettes};
+use super::coherence::{coherence, simplified_coherence};
 use super::levels::{SecondLevel, alternation, second_isomap};
 use super::procedure::SegmentDistances;
 
@@ -48,14 +48,14 @@ pub(super) fn groups(
     for (g, segments) in members.iter().enumerate() {
         segments.iter().for_each(|&i| ordered[i] = Some(g));
     }
-    let coherence = match distances {
-        SegmentDistances::All(matrix) => silhouettes(matrix, &ordered, count),
-        SegmentDistances::Nearest { .. } => simplified_silhouettes(sequences, &ordered, count),
+    let coherences = match distances {
+        SegmentDistances::All(matrix) => coherence(matrix, &ordered, count),
+        SegmentDistances::Nearest { .. } => simplified_coherence(sequences, &ordered, count),
     };
     let digits = count.to_string().len().max(2);
     let groups = members
         .into_iter()
-        .zip(coherence)
+        .zip(coherences)
         .enumerate()
         .map(|(g, (mut segments, coherence))| {
             central_first(&mut segments, sequences);
@@ -105,7 +105,10 @@ pub(super) fn behaviors(
     size: (usize, usize),
 ) -> Result<Behaviors> {
     let of_group = match level {
-        SecondLevel::Alternation => alternation(transitions),
+        SecondLevel::Alternation => {
+            let sizes: Vec<usize> = groups.iter().map(|g| g.segments.len()).collect();
+            alternation(transitions, &sizes)
+        }
         SecondLevel::Isomap => second_isomap(
             &embedding.coordinates,
             embedding.dimension,

@@ -1,6 +1,6 @@
 //! The second level: behaviours from sequences of primitives.
 
-use crate::clustering::{Density, hdbscan};
+use crate::clustering::{Density, hdbscan_judged};
 use crate::embedding::{EmbedOptions, Geodesics, NeighbourGraph, SpatioTemporal, embed};
 use crate::error::Result;
 use crate::math::distances::DistanceMatrix;
@@ -12,7 +12,8 @@ use super::segments::Segment;
 /// How primitives are joined to behaviours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SecondLevel {
-    /// Primitives that alternate become one behaviour: each follows the other at least twice.
+    /// Primitives that alternate become one behaviour: each follows the other at least twice, and after at least a
+    /// quarter of the smaller one's segments.
     #[default]
     Alternation,
     /// A second spatio-temporal Isomap over the positions of the segments in the first (Jenkins and Mataric 2004).
@@ -23,6 +24,8 @@ pub enum SecondLevel {
 
 /// Times that each of two primitives must follow the other to alternate.
 const ALTERNATIONS: u32 = 2;
+/// ... as a share of the smaller one's segments, too: chance successions between large groups do not chain them.
+const ALTERNATION_SHARE: f64 = 0.25;
 
 /// Successions of groups inside true recordings: segments that follow one another directly, both in a group.
 pub fn transitions(segments: &[Segment], labels: &[Option<usize>], groups: usize) -> Transitions {
@@ -36,14 +39,16 @@ pub fn transitions(segments: &[Segment], labels: &[Option<usize>], groups: usize
     transitions
 }
 
-/// The behaviour of each group, numbered in the order of the groups: connected components of alternating groups.
-pub fn alternation(transitions: &Transitions) -> Vec<usize> {
+/// The behaviour of each group of these sizes, numbered in the order of the groups: connected components of alternating
+/// groups.
+pub fn alternation(transitions: &Transitions, sizes: &[usize]) -> Vec<usize> {
     let n = transitions.n;
     let mut components = UnionFind::new(n);
     for a in 0..n {
         for b in a + 1..n {
-            let alternate = transitions.count(a, b).min(transitions.count(b, a)) >= ALTERNATIONS;
-            if alternate {
+            let both_ways = transitions.count(a, b).min(transitions.count(b, a));
+            let enough = ALTERNATION_SHARE * sizes[a].min(sizes[b]) as f64;
+            if both_ways >= ALTERNATIONS && f64::from(both_ways) >= enough {
                 components.join(a, b);
             }
         }
@@ -75,7 +80,7 @@ pub fn second_isomap(
     let graph = NeighbourGraph::segmented(&distances, successors, &options)?;
     let (_, geodesics) = embed(&graph, &EmbedOptions::default())?;
     let clusters = match &geodesics {
-        Geodesics::All(matrix) => hdbscan(matrix, &density(min_size))?,
+        Geodesics::All(matrix) => hdbscan_judged(matrix, &Density::of_size(min_size))?,
         Geodesics::Landmarks(_) => labels.to_vec(),
     };
     let found = clusters.iter().flatten().max().map_or(0, |m| m + 1);
@@ -100,12 +105,4 @@ pub fn second_isomap(
         .into_iter()
         .flatten()
         .collect())
-}
-
-/// Density by which groups of at least `size` are found: the smallest group is also the neighbourhood of the density.
-pub(super) fn density(size: usize) -> Density {
-    Density {
-        min_cluster_size: size,
-        min_samples: size,
-    }
 }

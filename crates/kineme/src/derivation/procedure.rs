@@ -5,19 +5,22 @@ use rayon::prelude::*;
 use crate::alignment::{
     Band, LocalCost, Nearest, RecallGoal, Sequences, distance, nearest_to_recall, pair_distances,
 };
-use crate::clustering::{IntervalClusters, SweepAndPrune, hdbscan, sweep_and_prune};
+use crate::clustering::{
+    Density, IntervalClusters, SweepAndPrune, hdbscan_judged, sweep_and_prune,
+};
 use crate::embedding::{
-    Distances, EmbedOptions, Embedding, Geodesics, NeighbourGraph, SpatioTemporal, embed,
+    EmbedOptions, Embedding, Geodesics, NeighbourGraph, SpatioTemporal, TemporalRule, embed,
 };
 use crate::error::{Error, Result};
 use crate::math::distances::{DistanceMatrix, Neighbours};
+use crate::math::local_scale::{locally_scaled, locally_scaled_lists};
 use crate::math::partition::renumbered;
 use crate::motion::Motion;
 use crate::primitive::Transitions;
 
 use super::features::{Features, dims};
 use super::groups::{Behaviors, Group, behaviors, groups};
-use super::levels::{SecondLevel, density, transitions};
+use super::levels::{SecondLevel, transitions};
 use super::segments::{Cut, Segment, cut};
 
 /// How segments become groups.
@@ -67,6 +70,14 @@ pub struct Derivation {
     pub features: Features,
     /// K, the size of a neighbourhood; `None`: 3 for strokes that a segmenter found, 8 for clips and marks.
     pub neighbours: Option<usize>,
+    /// How many nearest may be common temporal neighbours; `None`: K for strokes, twice K for clips and marks.
+    pub temporal_neighbours: Option<usize>,
+    /// What makes a neighbour a common temporal one; `None`: the successor for strokes, for clips and marks both sides
+    /// as far as both segments have them.
+    pub rule: Option<TemporalRule>,
+    /// Distances are scaled by those to the nearest of this rank, 0 for plain distances; `None`: plain for strokes, by the
+    /// fifth for clips and marks, which come from many people.
+    pub local_scale: Option<usize>,
     /// The smallest group; `None`: 3 for strokes, 5 for clips and marks.
     pub min_group: Option<usize>,
     /// Divisor of distances between common temporal neighbours.
@@ -86,6 +97,9 @@ impl Derivation {
             cut,
             features: Features::default(),
             neighbours: None,
+            temporal_neighbours: None,
+            rule: None,
+            local_scale: None,
             min_group: None,
             c_ctn: 100.0,
             clustering: Clustering::default(),
@@ -102,6 +116,28 @@ impl Derivation {
     pub fn neighbours(&self) -> usize {
         self.neighbours
             .unwrap_or(if self.strokes() { 3 } else { 8 })
+    }
+
+    /// How many nearest may be common temporal neighbours, as it will be used.
+    pub fn temporal_neighbours(&self) -> usize {
+        let sides = if self.strokes() { 1 } else { 2 };
+        self.temporal_neighbours
+            .unwrap_or(sides * self.neighbours())
+    }
+
+    /// What makes a neighbour a common temporal one, as it will be used.
+    pub fn rule(&self) -> TemporalRule {
+        let automatic = if self.strokes() {
+            TemporalRule::Forward
+        } else {
+            TemporalRule::Known
+        };
+        self.rule.unwrap_or(automatic)
+    }
+
+    /// The rank of the neighbour that distances are scaled by, as it will be used; 0 for plain distances.
+    pub fn local_scale(&self) -> usize {
+        self.local_scale.unwrap_or(if self.strokes() { 0 } else { 5 })
     }
 
     /// The smallest group as it will be used.
@@ -124,15 +160,6 @@ pub enum SegmentDistances {
         /// Candidates a segment that were warped.
         candidates: usize,
     },
-}
-
-impl SegmentDistances {
-    fn as_input(&self) -> Distances<'_> {
-        match self {
-            SegmentDistances::All(matrix) => matrix.into(),
-            SegmentDistances::Nearest { lists, .. } => lists.into(),
-        }
-    }
 }
 
 /// All that a derivation found.
@@ -261,10 +288,26 @@ impl Derivation {
         let successors: Vec<Option<usize>> = segments.iter().map(|s| s.successor).collect();
         let options = SpatioTemporal {
             neighbours: self.neighbours(),
+            temporal_neighbours: Some(self.temporal_neighbours()),
             c_ctn: self.c_ctn,
+            rule: self.rule(),
             ..SpatioTemporal::default()
         };
-        let graph = NeighbourGraph::segmented(distances.as_input(), &successors, &options)?;
+        let graph = match (&distances, self.local_scale()) {
+            (SegmentDistances::All(matrix), 0) => {
+                NeighbourGraph::segmented(matrix, &successors, &options)?
+            }
+            (SegmentDistances::All(matrix), k) => {
+                NeighbourGraph::segmented(&locally_scaled(matrix, k)?, &successors, &options)?
+            }
+            (SegmentDistances::Nearest { lists, .. }, 0) => {
+                NeighbourGraph::segmented(lists, &successors, &options)?
+            }
+            (SegmentDistances::Nearest { lists, .. }, k) => {
+                let scaled = locally_scaled_lists(lists, k)?;
+                NeighbourGraph::segmented(&scaled, &successors, &options)?
+            }
+        };
         let (embedding, geodesics) = embed(&graph, &EmbedOptions::default())?;
         if !embedding.synthetic_edges.is_empty() {
             notes.push(format!(
@@ -286,7 +329,7 @@ impl Derivation {
         let found = match (self.clustering, &geodesics) {
             (Clustering::SweepAndPrune, _) => sweep.labels.clone(),
             (Clustering::Hdbscan, Geodesics::All(matrix)) => {
-                hdbscan(matrix, &density(self.min_group()))?
+                hdbscan_judged(matrix, &Density::of_size(self.min_group()))?
             }
             (Clustering::Hdbscan, Geodesics::Landmarks(_)) => {
                 notes.push(format!(
@@ -295,7 +338,7 @@ impl Derivation {
                 ));
                 let matrix =
                     DistanceMatrix::euclidean(&embedding.coordinates, embedding.dimension)?;
-                hdbscan(&matrix, &density(self.min_group()))?
+                hdbscan_judged(&matrix, &Density::of_size(self.min_group()))?
             }
         };
         let (labels, groups) = groups(&renumbered(&found), &distances, sequences);
@@ -352,7 +395,7 @@ impl Derivation {
             &packed,
             &Nearest::with_radius(radius),
             &RecallGoal {
-                neighbours: self.neighbours(),
+                neighbours: self.temporal_neighbours(),
                 seed: self.seed,
                 ..RecallGoal::default()
             },

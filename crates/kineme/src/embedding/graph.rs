@@ -17,7 +17,7 @@ pub struct Edge {
     pub length: f64,
 }
 
-/// A directed observation of an edge, before both directions are merged.
+/// A directed observation of an edge, before both directions are merged. Each direction is at most once `common`.
 pub(super) struct Mark {
     pub from: usize,
     pub to: usize,
@@ -55,7 +55,7 @@ impl NeighbourGraph {
         for mark in marks {
             match merged.last_mut() {
                 Some((edge, both)) if pair(edge) == pair(&mark) => {
-                    *both |= edge.from != mark.from && edge.common && mark.common;
+                    *both |= edge.common && mark.common;
                     edge.common |= mark.common;
                     edge.adjacent |= mark.adjacent;
                 }

@@ -37,7 +37,7 @@ pub struct Placement {
 }
 
 impl NeighbourGraph {
-    /// Links a new item to its K nearest; common temporal neighbours are those whose predecessor or successor is near
+    /// Links a new item to its K nearest and to its common temporal neighbours; common temporal neighbours are those whose predecessor or successor is near
     /// its own, by the rule of `options`. Give the successors and options that the graph was made with.
     ///
     /// # Errors
@@ -59,26 +59,34 @@ impl NeighbourGraph {
                 self.len()
             )));
         }
+        let wide = options.temporal_neighbours.unwrap_or(options.neighbours);
         let near = |row: &[f64]| -> Vec<usize> {
-            let list = k_nearest(row, options.neighbours, None);
+            let list = k_nearest(row, wide, None);
             list.into_iter().map(|(i, _)| i).collect()
         };
         let (near_previous, near_next) = (item.previous.map(near), item.next.map(near));
-        let edges: Vec<(usize, f64)> = k_nearest(item.distances, options.neighbours, None);
-        let nearest = edges.first().map(|e| e.1).ok_or_else(|| {
+        let ranked = k_nearest(item.distances, wide.max(options.neighbours), None);
+        let nearest = ranked.first().map(|e| e.1).ok_or_else(|| {
             Error::invalid("a new item needs a finite distance to at least one item")
         })?;
-        let shortened = edges.into_iter().map(|(y, distance)| {
-            let forward = near_next
-                .as_ref()
-                .zip(successors.get(y).copied().flatten())
-                .is_some_and(|(near, next)| near.contains(&next));
-            let backward = near_previous
-                .as_ref()
-                .is_some_and(|near| near.iter().any(|&p| successors[p] == Some(y)));
-            let common = distance <= self.reach && options.rule.holds(forward, backward);
-            (y, distance / if common { options.c_ctn } else { 1.0 })
-        });
+        let shortened = ranked
+            .into_iter()
+            .enumerate()
+            .filter_map(|(rank, (y, distance))| {
+                let forward = near_next
+                    .as_ref()
+                    .zip(successors[y])
+                    .map(|(near, next)| near.contains(&next));
+                let before = successors.iter().position(|next| *next == Some(y));
+                let backward = near_previous
+                    .as_ref()
+                    .zip(before)
+                    .map(|(near, before)| near.contains(&before));
+                let common =
+                    rank < wide && distance <= self.reach && options.rule.holds(forward, backward);
+                let divisor = if common { options.c_ctn } else { 1.0 };
+                (rank < options.neighbours || common).then_some((y, distance / divisor))
+            });
         Ok(Links {
             edges: shortened.collect(),
             nearest,

@@ -63,15 +63,22 @@ pub enum TemporalRule {
     Both,
     /// When at least one holds.
     Either,
+    /// When both hold as far as both segments have a predecessor and a successor, and they share at least one side.
+    Known,
 }
 
 impl TemporalRule {
-    pub(super) fn holds(self, forward: bool, backward: bool) -> bool {
+    /// Whether the rule holds; `None` for a side that one of the two segments lacks.
+    pub(super) fn holds(self, forward: Option<bool>, backward: Option<bool>) -> bool {
+        let (next, before) = (forward == Some(true), backward == Some(true));
         match self {
-            TemporalRule::Forward => forward,
-            TemporalRule::Backward => backward,
-            TemporalRule::Both => forward && backward,
-            TemporalRule::Either => forward || backward,
+            TemporalRule::Forward => next,
+            TemporalRule::Backward => before,
+            TemporalRule::Both => next && before,
+            TemporalRule::Either => next || before,
+            TemporalRule::Known => {
+                (next || before) && forward != Some(false) && backward != Some(false)
+            }
         }
     }
 }
@@ -85,6 +92,9 @@ pub struct SpatioTemporal {
     /// K, the size of a neighbourhood: about half the smallest group worth finding (3 for strokes of one recording,
     /// 8 for collections of clips). At least 1.
     pub neighbours: usize,
+    /// How many nearest may be common temporal neighbours, and count as near for their predecessors and successors;
+    /// `None` for K. Those beyond K are joined only where the rule holds.
+    pub temporal_neighbours: Option<usize>,
     /// Divisor of edges between common temporal neighbours, 1 or more; 10 to 100 are useful.
     pub c_ctn: f64,
     /// Divisor of edges between items adjacent in one recording, 1 or more; 1 is neutral.
@@ -103,6 +113,7 @@ impl Default for SpatioTemporal {
     fn default() -> Self {
         Self {
             neighbours: 8,
+            temporal_neighbours: None,
             c_ctn: 100.0,
             c_atn: 1.0,
             rule: TemporalRule::Forward,
@@ -125,7 +136,7 @@ impl SpatioTemporal {
     }
 
     pub(super) fn check(&self) -> Result<()> {
-        if self.neighbours == 0 {
+        if self.neighbours == 0 || self.temporal_neighbours == Some(0) {
             return Err(Error::invalid("a neighbourhood needs at least 1 neighbour"));
         }
         check_factors(self.c_ctn, self.c_atn, self.radius)
@@ -163,28 +174,40 @@ impl NeighbourGraph {
         options.check()?;
         let len = distances.len();
         let previous = predecessors(successors, len)?;
-        let near = distances.nearest(options.neighbours);
+        let wide = options.temporal_neighbours.unwrap_or(options.neighbours);
+        let near = distances.nearest(wide.max(options.neighbours));
         let nearest = nearest_distances(&near);
         let reach = options
             .radius
             .zip(median(&nearest))
             .map_or(f64::INFINITY, |(r, m)| r * m);
+        let near_in_time = near.truncated(wide);
         let follow =
-            |x: Option<usize>, y: Option<usize>| x.zip(y).is_some_and(|(x, y)| near.contains(x, y));
+            |x: Option<usize>, y: Option<usize>| x.zip(y).map(|(x, y)| near_in_time.contains(x, y));
         let mut marks: Vec<Mark> = (0..len)
             .into_par_iter()
-            .flat_map_iter(|x| near.of(x).iter().map(move |&(y, d)| (x, y, d)))
-            .map(|(x, y, distance)| Mark {
-                from: x,
-                to: y,
-                distance,
-                common: distance <= reach
+            .flat_map_iter(|x| {
+                let ranked = near.of(x).iter().enumerate();
+                ranked.map(move |(rank, &(y, d))| (rank, x, y, d))
+            })
+            .map(|(rank, x, y, distance)| {
+                let common = rank < wide
+                    && distance <= reach
                     && options.rule.holds(
                         follow(successors[x], successors[y]),
                         follow(previous[x], previous[y]),
-                    ),
-                adjacent: successors[x] == Some(y) || successors[y] == Some(x),
+                    );
+                let mark = Mark {
+                    from: x,
+                    to: y,
+                    distance,
+                    common,
+                    adjacent: successors[x] == Some(y) || successors[y] == Some(x),
+                };
+                (rank, mark)
             })
+            .filter(|(rank, mark)| *rank < options.neighbours || mark.common)
+            .map(|(_, mark)| mark)
             .collect();
         if options.chain {
             for (x, next) in successors.iter().enumerate() {

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use super::resample::places;
 use super::track::Track;
 use crate::error::{Error, Result};
+use crate::math::rotation::{exp, log_near};
 use crate::skeleton::{Frame, Root, Skeleton};
 
 /// A movement of one body at one rate: poses, and beside them where the body stands. Finite, at least one pose.
@@ -139,17 +140,33 @@ impl Motion {
     }
 
     /// The motion at another rate, coordinates interpolated linearly; the first frame stays at time zero.
+    /// A ball whose two names for a rotation change between frames is interpolated the short way.
     ///
     /// # Errors
     /// When the rate is not positive, or would make more than a million frames of fewer.
     pub fn resampled(&self, rate_hz: f64) -> Result<Self> {
         let places = places(self.frames(), self.rate_hz, rate_hz)?;
+        let balls: Vec<_> = (0..self.skeleton.joints().len())
+            .map(|j| self.skeleton.coordinates(j))
+            .filter(|at| at.len() == 3)
+            .collect();
         let mut poses = Vec::with_capacity(places.len() * self.skeleton.dof());
         let mut roots = Vec::with_capacity(places.len());
         for p in places {
             let blend = |x: f64, y: f64| x + (y - x) * p.share;
+            let first = poses.len();
             let pair = self.pose(p.before).iter().zip(self.pose(p.after));
             poses.extend(pair.map(|(x, y)| blend(*x, *y)));
+            for ball in &balls {
+                let at = |f: usize| Vector3::from_column_slice(&self.pose(f)[ball.clone()]);
+                let (x, y) = (at(p.before), at(p.after));
+                if (y - x).norm() > std::f64::consts::PI {
+                    let v = x + (log_near(&exp(&y), &x) - x) * p.share;
+                    let nearer_first = p.share < 0.5;
+                    let v = if nearer_first { v } else { log_near(&exp(&v), &y) };
+                    poses[first + ball.start..first + ball.end].copy_from_slice(v.as_slice());
+                }
+            }
             let (a, b) = (self.root(p.before), self.root(p.after));
             roots.push(Root {
                 position: a.position + (b.position - a.position) * p.share,

@@ -16,6 +16,9 @@ use crate::skeleton::{JointKind, Role, Skeleton};
 /// Length of thigh and shank over that of the trunk from hips to suprasternale (de Leva 1996, men).
 const TRUNKS_A_LEG: f64 = (0.4222 + 0.4340) / 0.5319;
 
+/// The most (radians) that a hand or foot known from a point swings away from forearm or shank.
+const SWING: f64 = 1.75;
+
 type Turns = Vec<UnitQuaternion<f64>>;
 
 /// World orientation of each observed part at each frame, keyed by the role that moves it (`Chest` is the thorax).
@@ -100,17 +103,21 @@ impl Anatomy {
             None => (neck, hips.as_slice()),
         };
         let mut parts = BTreeMap::new();
+        let resting = Resting::of(marks);
         // The line of the hips is rigid, so the pelvis follows it exactly; shoulders shrug, so the thorax follows the spine.
-        let pelvis = frames(marks.frames, |f| {
-            frame_y_z(&(left_hip[f] - right_hip[f]), &(top_of_pelvis[f] - hips[f]))
-        });
+        // Where rigs put the hips before or behind the spine differs; a standing zero pose says what upright is.
+        let pelvis = match (marks.rotations.get(&Role::Hips), &resting) {
+            (Some(own), Some(rest)) => own.iter().map(|q| q * rest.frame).collect(),
+            _ => frames(marks.frames, |f| {
+                frame_y_z(&(left_hip[f] - right_hip[f]), &(top_of_pelvis[f] - hips[f]))
+            }),
+        };
         let thorax = frames(marks.frames, |f| {
             frame_z_y(
                 &(neck[f] - bottom_of_thorax[f]),
                 &(left_arm[f] - right_arm[f]),
             )
         });
-        let resting = Resting::of(marks);
         if let Some(head) = head(marks, &thorax, neck, resting.as_ref()) {
             parts.insert(Role::Head, head);
         }
@@ -321,7 +328,10 @@ fn end_part(
         .map(|(end, tip)| {
             frames(marks.frames, |f| {
                 let direction = (tip[f] - end[f]).try_normalize(1e-6)?;
-                Some(shortest(&(lower[f] * ahead), &direction) * lower[f])
+                let swing = shortest(&(lower[f] * ahead), &direction);
+                // Points of hands and feet lie so near wrist and ankle that noise may turn them round.
+                let share = (SWING / swing.angle().max(SWING)).min(1.0);
+                Some(swing.powf(share) * lower[f])
             })
         });
     let Some(own) = marks.rotations.get(&limb.end) else {
@@ -331,7 +341,8 @@ fn end_part(
         true => r
             .bone(limb.end, limb.tip)
             .or_else(|| r.bone(limb.lower, limb.end)),
-        false => Some(r.frame),
+        // Legs may be spread at rest, and the feet with them.
+        false => r.bone(limb.lower, limb.end),
     });
     Some(oriented(own, rest, pointed.as_deref().unwrap_or(lower)))
 }

@@ -10,13 +10,10 @@ use nalgebra::{UnitQuaternion, Vector3};
 use crate::math::rotation::{shortest, twist_angle, wrap};
 use crate::math::statistics::median;
 
-/// Flexion (radians) above which the hinge plane of a clean source says all; it starts to say something at
-/// [`STRAIGHT`] of it.
+/// Flexion (radians) below which the hinge plane says nothing, and above which that of a clean source says all.
+const STRAIGHT: f64 = 0.17;
 const BENT: f64 = 0.44;
-const STRAIGHT: f64 = 0.39;
-/// Noise of the twist (radians) that is let through from the plane, and which sets the bend that a noisy source needs.
-const NOISE_ACCEPTED: f64 = 0.15;
-/// Noise of the twist (radians) at which the plane is worth as much as the smoothed passage.
+/// Noise of the plane's twist (radians) at which the plane is worth as much as the smoothed passage.
 const NOISE_HALF: f64 = 0.09;
 /// Seconds over which noise of the plane is smoothed, and in which a straight limb comes back to its usual twist.
 const SMOOTHING_SECS: f64 = 0.1;
@@ -82,7 +79,7 @@ pub fn limb_frames(samples: &[LimbSample], kind: &LimbKind, rate_hz: f64) -> Lim
     let has_source = samples.iter().all(|s| s.source.is_some());
     let mut readings: Vec<Reading> = samples
         .iter()
-        .map(|s| read(s, kind, has_source, noise, rate_hz))
+        .map(|s| read(s, kind, has_source, rate_hz))
         .collect();
     let center = center(&readings, kind.resting.filter(|_| has_source));
     if has_source {
@@ -112,7 +109,7 @@ pub fn limb_frames(samples: &[LimbSample], kind: &LimbKind, rate_hz: f64) -> Lim
     LimbFrames { upper, lower }
 }
 
-fn read(s: &LimbSample, kind: &LimbKind, has_source: bool, noise: f64, rate_hz: f64) -> Reading {
+fn read(s: &LimbSample, kind: &LimbKind, has_source: bool, rate_hz: f64) -> Reading {
     let down = -Vector3::z();
     let z = Vector3::z_axis();
     let direction = s.carrier.inverse() * s.upper;
@@ -129,9 +126,8 @@ fn read(s: &LimbSample, kind: &LimbKind, has_source: bool, noise: f64, rate_hz: 
     };
     let normal = s.upper.cross(&s.lower) * if kind.bends_forward { -1.0 } else { 1.0 };
     let flexion = normal.norm().atan2(s.upper.dot(&s.lower));
-    let bent = BENT.max((noise / NOISE_ACCEPTED).min(0.78).asin());
-    // A limb folded up has no better plane than a straight one.
-    let open = flexion.min(std::f64::consts::PI - flexion);
+    // A limb folded up has no plane either; but folded joints are better hinges than straight ones.
+    let open = flexion.min(2.0 * (std::f64::consts::PI - flexion));
     // Straight down the usual frame is the neutral one, elsewhere the middle of the range.
     let hanging = twist_angle(&untwisted(&down).inverse(), &z) * direction.dot(&down).max(0.0);
     let mut usual = wrap(hanging - source);
@@ -149,7 +145,7 @@ fn read(s: &LimbSample, kind: &LimbKind, has_source: bool, noise: f64, rate_hz: 
         source,
         plane: wrap(about(&normal) - source),
         flexion,
-        trust: smoothstep(bent * STRAIGHT, bent, open),
+        trust: smoothstep(STRAIGHT, BENT, open),
         usual,
         pull: firmness,
     }

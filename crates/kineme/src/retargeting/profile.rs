@@ -38,13 +38,13 @@ const BUILT_IN: &[(&str, &str, &str)] = &[
     (
         "cmu-bvh",
         "hips=Hips spine=LowerBack chest=Spine upper_chest=Spine1 neck=Neck head=Head",
-        "shoulder={Side}Shoulder upper_arm={Side}Arm lower_arm={Side}ForeArm hand={Side}Hand \
+        "shoulder={Side}Shoulder upper_arm={Side}Arm lower_arm={Side}ForeArm hand={Side}FingerBase,{Side}Hand \
          fingers={Side}HandIndex1 upper_leg={Side}UpLeg lower_leg={Side}Leg foot={Side}Foot toes={Side}ToeBase",
     ),
     (
         "acclaim",
         "hips=root spine=lowerback chest=upperback upper_chest=thorax neck=lowerneck head=head",
-        "shoulder={s}clavicle upper_arm={s}humerus lower_arm={s}radius hand={s}wrist fingers={s}fingers \
+        "shoulder={s}clavicle upper_arm={s}humerus lower_arm={s}radius hand={s}hand,{s}wrist fingers={s}fingers \
          upper_leg={s}femur lower_leg={s}tibia foot={s}foot toes={s}toes",
     ),
     (
@@ -55,7 +55,7 @@ const BUILT_IN: &[(&str, &str, &str)] = &[
     ),
     (
         "character-creator",
-        "hips=CC_Base_Hip spine=CC_Base_Spine01 chest=CC_Base_Spine02 neck=CC_Base_NeckTwist01 head=CC_Base_Head",
+        "hips=CC_Base_Pelvis,CC_Base_Hip spine=CC_Base_Spine01 chest=CC_Base_Spine02 neck=CC_Base_NeckTwist01 head=CC_Base_Head",
         "shoulder=CC_Base_{S}_Clavicle upper_arm=CC_Base_{S}_Upperarm lower_arm=CC_Base_{S}_Forearm \
          hand=CC_Base_{S}_Hand fingers=CC_Base_{S}_Mid1 upper_leg=CC_Base_{S}_Thigh lower_leg=CC_Base_{S}_Calf \
          foot=CC_Base_{S}_Foot toes=CC_Base_{S}_ToeBase",

@@ -7,7 +7,10 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::joint::{Joint, JointKind};
 use super::role::Role;
 use crate::error::{Error, Result};
-use crate::math::rotation::{exp, log_near};
+use crate::math::rotation::{exp, log, log_near};
+
+/// The longest rotation vector (radians) that a ball's coordinates keep for the sake of continuity.
+const FARTHEST: f64 = 1.2 * std::f64::consts::PI;
 
 /// A point of the body that acts on the world: hands, feet, head.
 #[derive(Debug, Clone, PartialEq)]
@@ -167,6 +170,9 @@ impl Skeleton {
 
     /// Writes into `pose` the coordinates of `joint` that come nearest `rotation` (in the parent's frame);
     /// `previous` is the pose before, for continuity. Returns the rotation that the joint really takes.
+    ///
+    /// A ball's coordinates may pass pi to follow the pose before, but only as far as no human joint goes: a joint that a
+    /// glitch of the source turned round comes back to the coordinates that everyone else has for the same posture.
     pub fn set_rotation(
         &self,
         pose: &mut [f64],
@@ -186,7 +192,13 @@ impl Skeleton {
                 let before = previous.map_or(Vector3::zeros(), |p| {
                     Vector3::from_column_slice(&p[at.clone()])
                 });
-                let v = log_near(&(reference.inverse() * rotation), &before);
+                let turn = reference.inverse() * rotation;
+                let near = log_near(&turn, &before);
+                let v = if near.norm() > FARTHEST {
+                    log(&turn)
+                } else {
+                    near
+                };
                 pose[at.clone()].copy_from_slice(v.as_slice());
             }
         }

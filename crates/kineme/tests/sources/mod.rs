@@ -1,10 +1,11 @@
-//! Synthetic sources: random smooth motions of Ares, recorded by skeletons of other makes.
+//! Synthetic sources: random smooth motions of Ares, recorded by skeletons of other makes; and how to look at limbs.
+#![allow(dead_code, reason = "every test file uses its part")]
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use kineme::math::rotation::Axis;
-use kineme::math::rotation::exp;
+use kineme::math::rotation::{Axis, exp, wrap};
+use kineme::retargeting::retarget;
 use kineme::{
     Format, Motion, Observed, RecordedJoint, Recording, Role, Root, Skeleton, Source, ares,
 };
@@ -210,7 +211,7 @@ pub fn rotations(motion: &Motion, rig: Rig, stretch: f64) -> Recording {
             let Some(p) = parent else {
                 turns.push(own(k));
                 if f == 0 {
-                    joints.push(joint(name, None, Vector3::zeros()));
+                    joints.push(recorded_joint(name, None, Vector3::zeros()));
                 }
                 continue;
             };
@@ -229,7 +230,7 @@ pub fn rotations(motion: &Motion, rig: Rig, stretch: f64) -> Recording {
                 } else {
                     stretch
                 };
-                joints.push(joint(name, Some(p), local * length));
+                joints.push(recorded_joint(name, Some(p), local * length));
             }
         }
     }
@@ -271,7 +272,7 @@ pub fn positions(motion: &Motion) -> Recording {
 pub fn of_points(points: Vec<Option<Vector3<f64>>>, rate_hz: f64) -> Recording {
     let joints = JOINTS
         .iter()
-        .map(|(.., name)| joint(name, None, Vector3::zeros()))
+        .map(|(.., name)| recorded_joint(name, None, Vector3::zeros()))
         .collect();
     Recording::new(
         "points",
@@ -306,7 +307,7 @@ pub fn jittered(recording: &Recording, deviation: f64, seed: u64) -> Recording {
     of_points(noisy, recording.rate_hz())
 }
 
-fn joint(name: &str, parent: Option<usize>, offset: Vector3<f64>) -> RecordedJoint {
+fn recorded_joint(name: &str, parent: Option<usize>, offset: Vector3<f64>) -> RecordedJoint {
     RecordedJoint {
         name: name.into(),
         parent,
@@ -314,5 +315,110 @@ fn joint(name: &str, parent: Option<usize>, offset: Vector3<f64>) -> RecordedJoi
         tip: None,
         order: None,
         dof: 3,
+    }
+}
+
+/// The limbs: upper part, lower part, where it ends.
+pub const LIMBS: [[Role; 3]; 4] = [
+    [Role::LeftUpperArm, Role::LeftLowerArm, Role::LeftHand],
+    [Role::RightUpperArm, Role::RightLowerArm, Role::RightHand],
+    [Role::LeftUpperLeg, Role::LeftLowerLeg, Role::LeftFoot],
+    [Role::RightUpperLeg, Role::RightLowerLeg, Role::RightFoot],
+];
+
+pub fn to_ares(recording: &Recording) -> Motion {
+    retarget(recording, &body(), None).expect("a motion").motion
+}
+
+pub fn joint(body: &Skeleton, role: Role) -> usize {
+    *body.joints_of(role).last().expect("a joint")
+}
+
+/// World directions of the bones of a limb, and the bend between them (radians).
+pub fn bones(motion: &Motion, f: usize, limb: &[Role; 3]) -> ([Vector3<f64>; 2], f64) {
+    let frames = motion.frames_at(f);
+    let [a, b, c] = limb.map(|r| frames[joint(motion.skeleton(), r)].position);
+    let (upper, lower) = ((b - a).normalize(), (c - b).normalize());
+    (
+        [upper, lower],
+        upper.cross(&lower).norm().atan2(upper.dot(&lower)),
+    )
+}
+
+/// The turn of a limb's upper part against thorax or pelvis.
+pub fn shoulder(motion: &Motion, f: usize, limb: &[Role; 3]) -> UnitQuaternion<f64> {
+    let body = motion.skeleton();
+    let frames = motion.frames_at(f);
+    let carrier = match limb[2] {
+        Role::LeftHand | Role::RightHand => *body.trunk().last().expect("a trunk"),
+        _ => 0,
+    };
+    frames[carrier].rotation.inverse() * frames[joint(body, limb[0])].rotation
+}
+
+/// The angle between two unit vectors, exact for small ones.
+pub fn apart(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+    a.cross(b).norm().atan2(a.dot(b))
+}
+
+/// The greatest change of any shoulder or hip from frame to frame, radians.
+pub fn fastest(motion: &Motion) -> f64 {
+    let turns = (1..motion.frames()).flat_map(|f| {
+        LIMBS
+            .iter()
+            .map(move |limb| shoulder(motion, f, limb).angle_to(&shoulder(motion, f - 1, limb)))
+    });
+    turns.fold(0.0, f64::max)
+}
+
+/// A motion of Ares from poses written in clinical angles, one a frame.
+pub fn written(frames: usize, write: impl Fn(&Skeleton, f64, &mut [f64])) -> Motion {
+    let body = body();
+    let poses = (0..frames).flat_map(|f| {
+        let mut pose = body.neutral();
+        write(&body, f as f64 / RATE, &mut pose);
+        pose
+    });
+    let poses = poses.collect();
+    Motion::new(
+        "written",
+        body.clone(),
+        RATE,
+        poses,
+        vec![Root::ORIGIN; frames],
+    )
+    .expect("a motion")
+}
+
+/// Directions of all limbs agree everywhere; turns of shoulders and hips where the limb is bent more than 25 degrees.
+pub fn check(found: &Motion, wanted: &Motion, directions: f64, turns: f64, what: &str) {
+    assert_eq!(found.frames(), wanted.frames(), "{what}");
+    for f in 0..wanted.frames() {
+        for limb in &LIMBS {
+            let (is, _) = bones(found, f, limb);
+            let (was, bend) = bones(wanted, f, limb);
+            for (a, b) in is.iter().zip(&was) {
+                let off = apart(a, b);
+                assert!(
+                    off < directions,
+                    "{what}, frame {f}, {:?}: direction off by {off:e}",
+                    limb[0]
+                );
+            }
+            if bend > 25f64.to_radians() && bend < 155f64.to_radians() {
+                let off = shoulder(found, f, limb).angle_to(&shoulder(wanted, f, limb));
+                assert!(
+                    off < turns,
+                    "{what}, frame {f}, {:?} bent {bend:.2}: turn off by {off:e}",
+                    limb[0]
+                );
+            }
+        }
+        let yaw = wrap(found.root(f).yaw - wanted.root(f).yaw);
+        assert!(yaw.abs() < 1e-6, "{what}, frame {f}: heading off by {yaw}");
+        let pelvis = found.frames_at(f)[0]
+            .rotation
+            .angle_to(&wanted.frames_at(f)[0].rotation);
+        assert!(pelvis < 1e-6, "{what}, frame {f}: pelvis off by {pelvis}");
     }
 }
