@@ -102,7 +102,7 @@ fn tables_of_no_body_are_refused() {
                 "nothing in it",
                 &hollow,
                 Place::File,
-                "44 joints in 31494 frames",
+                "44 joints in 31495 frames",
             ),
         ],
         |bytes| parse(Kind::Angles, "a.csv", bytes, None, None),

@@ -163,7 +163,11 @@ impl Motion {
                 if (y - x).norm() > std::f64::consts::PI {
                     let v = x + (log_near(&exp(&y), &x) - x) * p.share;
                     let nearer_first = p.share < 0.5;
-                    let v = if nearer_first { v } else { log_near(&exp(&v), &y) };
+                    let v = if nearer_first {
+                        v
+                    } else {
+                        log_near(&exp(&v), &y)
+                    };
                     poses[first + ball.start..first + ball.end].copy_from_slice(v.as_slice());
                 }
             }
