@@ -1,8 +1,81 @@
 //! `kineme demo`: the choreographed session, from motion to vocabulary to page.
 
-use crate::args::{DemoArgs, Global};
-use crate::failure::Failure;
+use std::path::PathBuf;
 
-pub fn run(_args: &DemoArgs, _global: &Global) -> Result<u8, Failure> {
-    Err(Failure::failed("not there yet"))
+use kineme_paper::demo::{self, Demo, VOCABULARY};
+
+use crate::args::{DemoArgs, Global};
+use crate::failure::{Failure, print};
+use crate::findings::Findings;
+use crate::outputs::{existing, refuse_existing, unwritten};
+use crate::progress;
+use crate::table::{Side, aligned};
+
+pub fn run(args: &DemoArgs, global: &Global) -> Result<u8, Failure> {
+    let files: Vec<PathBuf> = Demo::files().iter().map(|f| args.out.join(f)).collect();
+    refuse_existing(files.iter().map(PathBuf::as_path), global)?;
+    let spinner = progress::spinner();
+    let found = demo::run(global.seed, &mut |stage| spinner.set_message(stage.name()));
+    spinner.finish_and_clear();
+    let found = found.map_err(|e| Failure::failed(e.to_string()))?;
+    let page = found
+        .write(&args.out, existing(global))
+        .map_err(unwritten)?;
+    let findings = Findings {
+        derived: &found.derived,
+        motions: &found.motions,
+        seconds: None,
+    };
+    if global.json {
+        print(findings.json()?.as_bytes())?;
+        return Ok(0);
+    }
+    let text = format!(
+        "A choreographed session of {} recordings, {} movements in {} strokes, that recur in varied order, size and \
+         speed.\nWhat was found in it without being told:\n\n{}\n{}\nwritten:    {}\nto look at: {}\n",
+        found.motions.len(),
+        found.movements.kinds,
+        found.strokes.kinds,
+        findings.text(),
+        judged(&found),
+        args.out.join(VOCABULARY).display(),
+        page.display()
+    );
+    print(text.as_bytes())?;
+    Ok(0)
+}
+
+/// What was found beside what was choreographed.
+fn judged(found: &Demo) -> String {
+    let rows: Vec<Vec<String>> = found
+        .derived
+        .groups
+        .iter()
+        .zip(&found.names)
+        .map(|(group, (stroke, count))| {
+            let size = group.segments.len();
+            vec![
+                group.name.clone(),
+                format!("{count} of {size}"),
+                stroke.clone(),
+            ]
+        })
+        .collect();
+    let header = [
+        ("group", Side::Left),
+        ("of one kind", Side::Right),
+        ("which is", Side::Left),
+    ];
+    let share = |what: &str, m: &demo::Match| {
+        format!(
+            "{what}: purity {:.2}, adjusted Rand index {:.2} (what is in no group counts against it)\n",
+            m.purity, m.ari
+        )
+    };
+    format!(
+        "Judged by what was choreographed, which the derivation never saw:\n\n{}\n{}{}",
+        aligned(&header, &rows),
+        share("groups against strokes     ", &found.strokes),
+        share("behaviors against movements", &found.movements)
+    )
 }

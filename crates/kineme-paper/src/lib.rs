@@ -1,5 +1,6 @@
 //! The reproduction: what the paper shows, computed again on open data.
 
+pub mod demo;
 pub mod derivation;
 pub mod figures;
 mod kmeans;
