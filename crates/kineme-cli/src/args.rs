@@ -31,12 +31,13 @@ pub struct Cli {
 
 /// What every verb takes.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Everywhere")]
 pub struct Global {
     /// Machine-readable output on stdout; messages stay on stderr
     #[arg(long, global = true)]
     pub json: bool,
     /// Threads to use [default: all cores]; results do not depend on it
-    #[arg(long, global = true, value_name = "N", value_parser = threads)]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, value_parser = threads)]
     pub threads: Option<usize>,
     /// Seed of every random choice
     #[arg(long, global = true, value_name = "N", default_value_t = 0)]
@@ -65,7 +66,7 @@ pub struct ReadArgs {
     #[arg(long, value_name = "FILE")]
     pub asf: Option<PathBuf>,
     /// Frame rate of files that do not say it: HZ, or amc=HZ,positions=HZ,msr=HZ
-    #[arg(long, value_name = "HZ|FORMAT=HZ,...", value_parser = InputRates::from_str)]
+    #[arg(long, value_name = "HZ|FORMAT=HZ,...", allow_negative_numbers = true, value_parser = InputRates::from_str)]
     pub input_rate: Option<InputRates>,
     /// Which joint is which, where the names are not recognised: a built-in profile, or a TOML file
     #[arg(long, value_name = "NAME|FILE")]
@@ -123,7 +124,7 @@ pub struct ConvertArgs {
     #[arg(long, value_name = "NAME")]
     pub body: Option<String>,
     /// Resample to this rate
-    #[arg(long, value_name = "HZ", value_parser = rate)]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = rate)]
     pub rate: Option<f64>,
     /// World positions of the joints in place of rotations: frame,<joint>_x,... in metres, z up
     #[arg(long)]
@@ -201,16 +202,16 @@ pub struct DeriveArgs {
     #[arg(long, value_name = "FILE.csv", conflicts_with = "segmenter")]
     pub marks: Option<PathBuf>,
     /// Aim at movements whose median length is this
-    #[arg(long, value_name = "SECS", value_parser = positive, conflicts_with = "marks")]
+    #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = positive, conflicts_with = "marks")]
     pub duration: Option<f64>,
     /// Share of each segment's mean posture to disregard, 0 to 1
-    #[arg(long, value_name = "F", value_parser = share)]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = share)]
     pub shape: Option<f64>,
     /// Neighbours of a segment in the graph [default: 3 for cut recordings, 8 for clips and marks]
-    #[arg(long, value_name = "K", value_parser = count)]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count)]
     pub neighbours: Option<usize>,
     /// The smallest group [default: 3 for cut recordings, 5 for clips and marks]
-    #[arg(long, value_name = "N", value_parser = count)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
     pub min_size: Option<usize>,
     /// How segments are grouped
     #[arg(long, value_enum, default_value = "hdbscan", value_name = "METHOD")]

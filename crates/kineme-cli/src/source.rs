@@ -85,10 +85,10 @@ impl Source {
             complain(&format!("warning: {warning}"));
         }
         if inputs.ignored > 0 {
-            complain(&format!(
-                "{} files are no motion format and were ignored",
-                inputs.ignored
-            ));
+            complain(&match inputs.ignored {
+                1 => "note: 1 file is no motion and was ignored".into(),
+                n => format!("note: {n} files are no motions and were ignored"),
+            });
         }
         Ok(Self {
             inputs,

@@ -1,4 +1,4 @@
-//! Warnings, each kind told once.
+//! What readers detected or doubted, each kind told once.
 
 use std::collections::HashMap;
 
@@ -18,7 +18,7 @@ struct Kind {
 }
 
 impl Warnings {
-    /// A warning about one motion. Warnings that differ in nothing but numbers are of one kind.
+    /// A remark on one motion. Remarks that differ in nothing but numbers are of one kind.
     pub fn add(&mut self, motion: &str, text: &str) {
         let key: String = text
             .chars()
@@ -43,7 +43,7 @@ impl Warnings {
     /// Tells each kind on stderr, with how often it was met.
     pub fn print(&self) {
         for line in self.lines() {
-            complain(&format!("warning: {line}"));
+            complain(&format!("note: {line}"));
         }
     }
 

@@ -212,10 +212,14 @@ pub fn summary(derived: &Derived, motions: &[Motion]) -> Vec<String> {
     let merged = derived.behaviors.items.iter();
     let merged = merged.filter(|b| b.primitives.len() > 1).count();
     let mut paragraphs = vec![format!(
-        "{segments} segments of {} motions fall into {} groups; {} belong to none. {}",
+        "{segments} segments of {} motions fall into {} groups; {} {}",
         motions.len(),
         derived.groups.len(),
-        segments - grouped,
+        match segments - grouped {
+            0 => "none is left over.".to_string(),
+            1 => "one belongs to none.".to_string(),
+            n => format!("{n} belong to none."),
+        },
         match merged {
             0 => "No groups alternate.".to_string(),
             1 => "Groups that alternate make one behavior.".to_string(),

@@ -192,6 +192,14 @@ fn resampling_keeps_even_turns_and_paths_even() {
             );
         }
     }
+    let rounded = even(3001, 1.0 / 0.0333333)
+        .resampled(60.0)
+        .expect("a recording");
+    assert_eq!(
+        rounded.frames(),
+        6001,
+        "a rounded frame time costs no frame"
+    );
     for rate in [0.0, f64::NAN, -1.0, 1e9] {
         assert!(recording.resampled(rate).is_err(), "{rate} Hz");
     }

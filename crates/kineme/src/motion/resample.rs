@@ -8,6 +8,9 @@ use crate::error::{Error, Result};
 /// Frames that resampling may make of fewer: some hours at the rate of any camera.
 const MOST_FRAMES: f64 = 1e6;
 
+/// How far past the end the last new frame may lie: files round their frame times, and 30 Hz is written as 30.00003.
+const SLACK_FRAMES: f64 = 0.05;
+
 /// Where a new frame lies between two old ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
@@ -27,7 +30,7 @@ pub(super) fn places(frames: usize, from_hz: f64, rate_hz: f64) -> Result<Vec<Pl
         )));
     }
     let last = frames - 1;
-    let count = ((last as f64 / from_hz) * rate_hz + 1e-9).floor() + 1.0;
+    let count = ((last as f64 / from_hz) * rate_hz + SLACK_FRAMES).floor() + 1.0;
     if count > MOST_FRAMES.max(frames as f64) {
         return Err(Error::invalid(format!(
             "{:.0} s at {rate_hz} Hz would be {count:.0} frames, more than {MOST_FRAMES:.0}",
@@ -43,7 +46,8 @@ pub(super) fn places(frames: usize, from_hz: f64, rate_hz: f64) -> Result<Vec<Pl
             } else {
                 at
             };
-            let before = (at.floor() as usize).min(last);
+            let at = at.min(last as f64);
+            let before = at.floor() as usize;
             Place {
                 before,
                 after: (before + 1).min(last),
