@@ -137,7 +137,8 @@ impl Derivation {
 
     /// The rank of the neighbour that distances are scaled by, as it will be used; 0 for plain distances.
     pub fn local_scale(&self) -> usize {
-        self.local_scale.unwrap_or(if self.strokes() { 0 } else { 5 })
+        self.local_scale
+            .unwrap_or(if self.strokes() { 0 } else { 5 })
     }
 
     /// The smallest group as it will be used.
