@@ -3,7 +3,7 @@
 use kineme::Recording;
 
 use crate::error::{FormatError, Place, Result};
-use crate::tables::{msr, positions};
+use crate::tables::{body_angles, msr, positions};
 use crate::text::{Blame, Lines, number, words};
 use crate::{amc, asf, bvh, deepmimic};
 
@@ -178,7 +178,8 @@ pub fn parse(
         Kind::Asf => Err(Blame(name).file("a skeleton", "a motion (`.amc`) of it")),
         Kind::Positions | Kind::TimedPositions => positions::parse(name, bytes, rate_hz),
         Kind::Msr => msr::parse(name, bytes, rate_hz),
-        Kind::Angles => unread("a joint-angle table"),
+        Kind::Angles if bytes.starts_with(b"PAR1") => unread("Parquet"),
+        Kind::Angles => body_angles::parse(name, bytes),
         Kind::C3d => unread("C3D"),
         Kind::Zip => Err(Blame(name).file("an archive inside an archive", "a motion")),
     }

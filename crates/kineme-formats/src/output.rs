@@ -72,3 +72,20 @@ pub fn write(
     };
     Ok(())
 }
+
+/// As [`write`], of bytes that are there already.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_bytes(path: &Path, existing: Existing, bytes: &[u8]) -> Result<()> {
+    write(path, existing, |out| {
+        out.write_all(bytes).map_err(|e| {
+            FormatError::new(
+                path.display().to_string(),
+                Place::File,
+                e.to_string(),
+                "a file that can be written",
+            )
+        })
+    })
+}

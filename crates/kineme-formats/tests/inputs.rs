@@ -267,3 +267,13 @@ fn output_is_complete_or_absent() {
         assert_eq!(mode(&path), mode(&usual));
     }
 }
+
+#[test]
+fn a_motion_is_read_with_the_hash_of_its_file() {
+    let folder = corpus();
+    let path = folder.path().join("set.zip/set/z.bvh");
+    let inputs = Inputs::resolve(&[path], &ReadOptions::default()).expect("inputs");
+    let (recording, hash) = inputs.entries[0].read_hashed().expect("a motion");
+    assert_eq!(recording, inputs.entries[0].read().expect("a motion"));
+    assert_eq!(hash, blake3::hash(BVH.as_bytes()).to_hex().as_str());
+}

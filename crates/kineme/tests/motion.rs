@@ -158,3 +158,11 @@ fn effectors_move_as_the_frames_say() {
     }
     assert_eq!(track.path(0).nth(3), Some(track.at(3)[0]));
 }
+
+#[test]
+fn duration_runs_from_the_first_frame_to_the_last() {
+    for (frames, rate, secs) in [(1, 30.0, 0.0), (61, 30.0, 2.0), (2, 4.0, 0.25)] {
+        assert_eq!(ramp(frames, rate).duration_secs(), secs, "{frames} frames");
+    }
+    assert!(ramp(2, 1e-9).resampled(1000.0).is_err(), "too many frames");
+}

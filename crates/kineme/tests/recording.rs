@@ -146,3 +146,110 @@ fn a_motion_as_a_recording_stands_where_the_motion_stands() {
         }
     }
 }
+
+/// A joint that turns about z and walks along x, evenly: the frame's number times a tenth.
+fn even(frames: usize, rate_hz: f64) -> Recording {
+    let turn = |f: usize| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 0.1 * f as f64);
+    let observed = Observed::Rotations {
+        rotations: (0..frames).map(turn).collect(),
+        translations: vec![Some(
+            (0..frames).map(|f| Vector3::x() * 0.1 * f as f64).collect(),
+        )],
+    };
+    let joints = vec![joint("root", None, [0.0; 3])];
+    Recording::new("even", source(Axis::Y, 0.01), joints, rate_hz, observed).expect("valid")
+}
+
+#[test]
+fn duration_runs_from_the_first_frame_to_the_last() {
+    for (frames, rate, secs) in [(1, 30.0, 0.0), (2, 4.0, 0.25), (344, 120.0, 343.0 / 120.0)] {
+        assert_eq!(even(frames, rate).duration_secs(), secs, "{frames} frames");
+    }
+}
+
+#[test]
+fn resampling_keeps_even_turns_and_paths_even() {
+    let recording = even(31, 30.0);
+    assert_eq!(recording.resampled(30.0).expect("the same"), recording);
+    for rate in [10.0, 45.0, 120.0, 7.0] {
+        let other = recording.resampled(rate).expect("a recording");
+        assert!(
+            (other.duration_secs() - 1.0).abs() < 1.0 / rate,
+            "{rate} Hz"
+        );
+        assert_eq!(other.source(), recording.source());
+        for f in 0..other.frames() {
+            let placed = other.placements(f)[0];
+            let expected = 3.0 * f as f64 / rate;
+            let (place, turn) = (
+                placed.position.expect("seen"),
+                placed.rotation.expect("turned"),
+            );
+            assert!((place.x - expected).abs() < 1e-12, "{rate} Hz, frame {f}");
+            assert!(
+                (turn.angle() - expected).abs() < 1e-9,
+                "{rate} Hz, frame {f}"
+            );
+        }
+    }
+    for rate in [0.0, f64::NAN, -1.0, 1e9] {
+        assert!(recording.resampled(rate).is_err(), "{rate} Hz");
+    }
+}
+
+#[test]
+fn a_missing_point_is_missing_on_both_sides_of_it_only() {
+    let seen = |x: f64| Some(Vector3::x() * x);
+    let observed = Observed::Positions(vec![seen(0.0), seen(1.0), None, seen(3.0), seen(4.0)]);
+    let joints = vec![joint("a", None, [0.0; 3])];
+    let recording =
+        Recording::new("gap", source(Axis::Z, 1.0), joints, 1.0, observed).expect("valid");
+    let Observed::Positions(found) = recording.resampled(2.0).expect("valid").observed().clone()
+    else {
+        panic!("positions stay positions");
+    };
+    let x: Vec<Option<f64>> = found.iter().map(|p| p.map(|p| p.x)).collect();
+    let wanted = [0.0, 0.5, 1.0, -1.0, -1.0, -1.0, 3.0, 3.5, 4.0];
+    assert_eq!(x, wanted.map(|v| (v >= 0.0).then_some(v)));
+}
+
+#[test]
+fn what_a_file_means_in_other_axes_and_units_is_the_same_file() {
+    let recording = even(3, 30.0);
+    let other = recording.reread(Axis::Z, 1.0).expect("valid");
+    for f in 0..3 {
+        let native = |r: &Recording| {
+            let placed = r.placements(f)[0];
+            (
+                r.source().to_native(placed.position.expect("seen")),
+                r.source()
+                    .rotation_to_native(placed.rotation.expect("turned")),
+            )
+        };
+        let ((p, q), (a, b)) = (native(&recording), native(&other));
+        assert!(
+            (p - a).norm() < 1e-12 && q.angle_to(&b) < 1e-12,
+            "frame {f}"
+        );
+    }
+    assert_eq!(
+        other.reread(Axis::Y, 0.01).expect("valid").source(),
+        recording.source()
+    );
+    assert!(recording.reread(Axis::Y, 0.0).is_err());
+
+    let told = Source {
+        up: Axis::Z,
+        ..recording.source().clone()
+    };
+    let moved = recording.clone().with_source(told.clone()).expect("valid");
+    assert_eq!(
+        (moved.placements(2), moved.source()),
+        (recording.placements(2), &told)
+    );
+    let broken = Source {
+        unit_metres: -1.0,
+        ..told
+    };
+    assert!(recording.with_source(broken).is_err());
+}

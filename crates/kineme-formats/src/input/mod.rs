@@ -1,6 +1,6 @@
 //! INPUT of every verb: files, folders and archives, as an ordered list of motions.
 //!
-//! Folders are walked depth first, their names in byte order, without hidden files; `.zip` archives act as folders,
+//! `-` is standard input, read once. Folders are walked depth first, their names in byte order, without hidden files; `.zip` archives act as folders,
 //! and `set.zip/inner/walk.bvh` names one motion in one. What is no motion format is ignored and counted. What
 //! means to be a motion and cannot be read becomes an entry whose reading tells why, so that callers decide whether
 //! to stop.
@@ -59,6 +59,8 @@ pub struct Entry {
 enum Location {
     File(PathBuf),
     Packed(Arc<Archive>, usize),
+    /// In memory: standard input.
+    Held(Arc<[u8]>),
     /// Nowhere: why.
     Lost(FormatError),
 }
@@ -79,7 +81,20 @@ impl Entry {
     /// # Errors
     /// When the file cannot be read or is no sound motion, naming file and place.
     pub fn read(&self) -> Result<Recording> {
+        self.parse(&self.place.bytes(&self.name, None, &self.handles)?)
+    }
+
+    /// Reads the motion, and tells the BLAKE3 of its file: 64 lower-case hexadecimal digits.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_hashed(&self) -> Result<(Recording, String)> {
         let bytes = self.place.bytes(&self.name, None, &self.handles)?;
+        let hash = blake3::hash(&bytes).to_hex().to_string();
+        Ok((self.parse(&bytes)?, hash))
+    }
+
+    fn parse(&self, bytes: &[u8]) -> Result<Recording> {
         let Some(kind) = self.kind else {
             return Err(FormatError::new(
                 &self.name,
@@ -103,7 +118,7 @@ impl Entry {
             }
             (None, _) => None,
         };
-        detect::parse(kind, &self.name, &bytes, self.rate_hz, skeleton.as_ref())
+        detect::parse(kind, &self.name, bytes, self.rate_hz, skeleton.as_ref())
     }
 }
 
@@ -121,6 +136,10 @@ impl Location {
             }
             Location::Packed(archive, file) => {
                 archive.unpack(&archive.files[*file], shown, most, handles)
+            }
+            Location::Held(bytes) => {
+                let most = most.map_or(bytes.len(), |n| bytes.len().min(n as usize));
+                Ok(bytes[..most].to_vec())
             }
             Location::Lost(why) => Err(why.clone()),
         }

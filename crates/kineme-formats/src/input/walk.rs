@@ -1,6 +1,7 @@
 //! From paths to entries: folders, archives, and the skeletons beside motions.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -25,6 +26,9 @@ impl Walk {
     /// Adds the motions of one path; where it leads to none, an entry that tells why.
     pub(super) fn input(&mut self, path: &Path) {
         let shown = shown(path);
+        if shown == "-" {
+            return self.standard_input();
+        }
         let before = self.entries.len();
         match std::fs::metadata(path) {
             Ok(found) if found.is_dir() => self.folder(path, &shown),
@@ -52,6 +56,20 @@ impl Walk {
         if self.entries.len() == before {
             let why = lost(&shown, "no motion in it".into(), "motion files");
             self.lose(&shown, why);
+        }
+    }
+
+    fn standard_input(&mut self) {
+        let mut bytes = Vec::new();
+        match std::io::stdin().lock().read_to_end(&mut bytes) {
+            Ok(_) => {
+                let kind = detect::detect("-", &bytes).filter(|kind| *kind != Kind::Zip);
+                self.push("-".into(), kind, Location::Held(bytes.into()));
+            }
+            Err(e) => {
+                let why = lost("-", e.to_string(), "readable standard input");
+                self.lose("-", why);
+            }
         }
     }
 
@@ -202,7 +220,7 @@ impl Walk {
                 let place = Location::Packed(Arc::clone(archive), beside[chosen].0);
                 Some((joined(&names[chosen]), place))
             }
-            Location::Lost(_) => None,
+            Location::Held(_) | Location::Lost(_) => None,
         }
     }
 

@@ -1,6 +1,7 @@
 //! Tables of motion: joint positions, MSR-Action3D text, joint angles.
 
 pub mod angles;
+pub mod body_angles;
 mod kinect;
 pub mod msr;
 pub mod positions;

@@ -18,6 +18,11 @@ pub(super) struct Grid {
 }
 
 impl Clock {
+    /// Readings that are known to rise.
+    pub fn of(readings: Vec<f64>) -> Self {
+        Self { readings }
+    }
+
     /// The next reading, seconds or a frame number; it must rise.
     pub fn push(&mut self, reading: f64, row: &Row<'_>) -> Result<()> {
         if let Some(last) = self.readings.last()

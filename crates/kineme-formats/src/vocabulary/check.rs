@@ -90,7 +90,8 @@ impl VocabularyMeta {
         for primitive in &self.primitives {
             primitive.check()?;
         }
-        self.check_behaviors()
+        self.check_behaviors()?;
+        self.check_transitions()
     }
 
     fn check_behaviors(&self) -> Checked {
@@ -105,23 +106,31 @@ impl VocabularyMeta {
         let primitives: BTreeSet<&str> = self.primitives.iter().map(|p| p.name.as_str()).collect();
         for behavior in &self.behaviors {
             distinct("groups of a behavior", &behavior.groups)?;
-            let unknown = |name: &str, expected: &str| {
-                (
-                    format!("{} in behavior {}", quoted(name), quoted(&behavior.name)),
-                    expected.to_string(),
-                )
-            };
             for group in &behavior.groups {
                 ensure(primitives.contains(group.as_str()), || {
-                    unknown(group, "a primitive's name")
+                    (
+                        format!("{} in behavior {}", quoted(group), quoted(&behavior.name)),
+                        "a primitive's name".to_string(),
+                    )
                 })?;
             }
-            let groups: BTreeSet<&str> = behavior.groups.iter().map(String::as_str).collect();
-            for name in behavior.transitions.iter().flat_map(|t| [&t.from, &t.to]) {
-                ensure(groups.contains(name.as_str()), || {
-                    unknown(name, "transitions between its groups")
-                })?;
-            }
+        }
+        Ok(())
+    }
+
+    fn check_transitions(&self) -> Checked {
+        let primitives: BTreeSet<&str> = self.primitives.iter().map(|p| p.name.as_str()).collect();
+        let mut seen = BTreeSet::new();
+        for t in &self.transitions {
+            let told = || format!("a transition from {} to {}", quoted(&t.from), quoted(&t.to));
+            let known = [&t.from, &t.to].map(|name| primitives.contains(name.as_str()));
+            ensure(known == [true; 2], || {
+                (told(), "names of primitives".to_string())
+            })?;
+            ensure(seen.insert((&t.from, &t.to)) && t.count > 0, || {
+                let expected = "every pair once, seen at least once".to_string();
+                (format!("{}, {} times", told(), t.count), expected)
+            })?;
         }
         Ok(())
     }
@@ -150,11 +159,10 @@ impl PrimitiveMeta {
                     )
                 },
             )?;
-            let positive = |v: f64| v.is_finite() && v > 0.0;
-            ensure(positive(e.rate_hz) && positive(e.duration_secs), || {
+            ensure(e.rate_hz.is_finite() && e.rate_hz > 0.0, || {
                 (
-                    at(format!("{} s at {} Hz", e.duration_secs, e.rate_hz)),
-                    "a positive duration and rate".to_string(),
+                    at(format!("{} Hz", e.rate_hz)),
+                    "a positive rate".to_string(),
                 )
             })?;
             let hex =

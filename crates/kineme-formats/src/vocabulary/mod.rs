@@ -5,8 +5,11 @@
 //! tensors: `exemplar-<i, six digits>/poses` (frames x coordinates, radians) and `.../root` (frames x 4:
 //! x, y, z in metres, z up, and yaw in radians).
 
+mod bind;
 mod check;
 mod container;
+
+pub use bind::{read, write};
 
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +51,8 @@ pub struct VocabularyMeta {
     pub primitives: Vec<PrimitiveMeta>,
     /// The second level: primitives that belong together.
     pub behaviors: Vec<BehaviorMeta>,
+    /// Which primitives were seen to follow which; pairs that never did are left out.
+    pub transitions: Vec<TransitionMeta>,
 }
 
 /// A primitive.
@@ -56,6 +61,8 @@ pub struct VocabularyMeta {
 pub struct PrimitiveMeta {
     /// Its name.
     pub name: String,
+    /// How many segments its group had, of which the exemplars are some.
+    pub members: u64,
     /// How well its exemplars cohere; `None` where it was not measured.
     pub coherence: Option<f64>,
     /// Its exemplars, at least one.
@@ -74,25 +81,21 @@ pub struct ExemplarMeta {
     pub end_secs: f64,
     /// Frames a second of its poses.
     pub rate_hz: f64,
-    /// How long the movement lasts, seconds.
-    pub duration_secs: f64,
     /// BLAKE3 of the source file, 64 lower-case hexadecimal digits, where it is known.
     pub blake3: Option<String>,
 }
 
 /// Primitives that belong together because they follow one another.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BehaviorMeta {
     /// Its name.
     pub name: String,
     /// The primitives it is made of; a primitive is in one behavior at most.
     pub groups: Vec<String>,
-    /// How often they were seen to follow one another.
-    pub transitions: Vec<TransitionMeta>,
 }
 
-/// How often one primitive of a behavior was followed by another.
+/// How often one primitive was followed by another.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TransitionMeta {
@@ -100,8 +103,8 @@ pub struct TransitionMeta {
     pub from: String,
     /// The primitive after.
     pub to: String,
-    /// Times seen.
-    pub count: u64,
+    /// Times seen, at least one.
+    pub count: u32,
 }
 
 impl VocabularyMeta {

@@ -1,6 +1,7 @@
 //! Tables, the files people write, and the vocabulary file.
 
 mod angles;
+mod body_angles;
 mod hostile;
 mod msr;
 mod positions;

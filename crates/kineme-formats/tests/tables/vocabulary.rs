@@ -12,7 +12,6 @@ fn exemplar(motion: &str, start: f64) -> ExemplarMeta {
         start_secs: start,
         end_secs: start + 0.7,
         rate_hz: 60.0,
-        duration_secs: 0.7,
         blake3: Some("0af1".repeat(16)),
     }
 }
@@ -30,6 +29,7 @@ fn frames(n: usize, seed: f64) -> ExemplarFrames {
 pub fn example() -> VocabularyFile {
     let primitive = |name: &str, coherence, exemplars| PrimitiveMeta {
         name: name.to_string(),
+        members: 7,
         coherence,
         exemplars,
     };
@@ -58,11 +58,11 @@ pub fn example() -> VocabularyFile {
             behaviors: vec![BehaviorMeta {
                 name: "behavior-01".to_string(),
                 groups: vec!["group-01".to_string(), "wave / \"out\"".to_string()],
-                transitions: vec![TransitionMeta {
-                    from: "group-01".to_string(),
-                    to: "wave / \"out\"".to_string(),
-                    count: 4,
-                }],
+            }],
+            transitions: vec![TransitionMeta {
+                from: "group-01".to_string(),
+                to: "wave / \"out\"".to_string(),
+                count: 4,
             }],
         },
         exemplars: vec![frames(4, 0.0), frames(1, 0.5), frames(2, 7.0)],
@@ -143,7 +143,7 @@ fn invalid_vocabularies_are_not_written() {
         (
             "rate",
             |v| v.meta.primitives[0].exemplars[1].rate_hz = 0.0,
-            "at 0 Hz",
+            "0 Hz",
         ),
         (
             "motion",
@@ -173,8 +173,18 @@ fn invalid_vocabularies_are_not_written() {
         ),
         (
             "transition",
-            |v| v.meta.behaviors[0].transitions[0].to = "x".to_string(),
-            "`x` in behavior",
+            |v| v.meta.transitions[0].to = "x".to_string(),
+            "from `group-01` to `x`",
+        ),
+        (
+            "transition never seen",
+            |v| v.meta.transitions[0].count = 0,
+            "0 times",
+        ),
+        (
+            "transition twice",
+            |v| v.meta.transitions.extend_from_within(..),
+            "4 times",
         ),
     ];
     for (what, damage, word) in cases {
@@ -266,4 +276,95 @@ fn damaged_files_are_refused() {
         let error = VocabularyFile::parse("v.kineme", bytes).expect_err(what);
         refused(what, &error, Place::File, word);
     }
+}
+
+/// Two primitives of Adonis with numbers that rounding would show.
+fn vocabulary() -> kineme::Vocabulary {
+    use kineme::{Behavior, Exemplar, Motion, Primitive, Provenance, Root, Transitions};
+
+    let body = std::sync::Arc::new(kineme::adonis().unwrap());
+    let exemplar = |name: &str, frames: usize| {
+        let roots = (0..frames).map(|f| Root {
+            position: [f as f64 / 3.0, -0.0, 1e-300].into(),
+            yaw: 7.0 / 9.0,
+        });
+        let poses = (0..20 * frames).map(|i| (i as f64).sin()).collect();
+        let body = std::sync::Arc::clone(&body);
+        Exemplar {
+            motion: Motion::new(name, body, 1.0 / 0.0333333, poses, roots.collect()).unwrap(),
+            provenance: Provenance {
+                motion: name.to_string(),
+                start_secs: 0.1,
+                end_secs: 0.1 + 0.2,
+                blake3: (frames > 1).then(|| "0f".repeat(32)),
+            },
+        }
+    };
+    let primitive = |name: &str, coherence, exemplars: Vec<Exemplar>| Primitive {
+        name: name.to_string(),
+        members: exemplars.len() + 3,
+        exemplars,
+        coherence,
+    };
+    let (out, back) = ("out", "back");
+    kineme::Vocabulary::new(
+        std::sync::Arc::clone(&body),
+        vec![
+            primitive(
+                out,
+                Some(0.1 + 0.7),
+                vec![exemplar("a.bvh", 4), exemplar("b.bvh", 1)],
+            ),
+            primitive(back, None, vec![exemplar("set.zip/a.bvh", 2)]),
+        ],
+        vec![Behavior {
+            name: "wave".to_string(),
+            primitives: vec![out.to_string(), back.to_string()],
+        }],
+        Transitions {
+            counts: vec![0, 5, 2, u32::MAX],
+            n: 2,
+        },
+    )
+    .unwrap()
+}
+
+#[test]
+fn the_librarys_vocabulary_comes_back_bit_for_bit() {
+    let vocabulary = vocabulary();
+    let bytes = kineme_formats::vocabulary::write(&vocabulary, "v").unwrap();
+    let back = kineme_formats::vocabulary::read("v", &bytes).unwrap();
+    assert_eq!(back, vocabulary);
+    let bits = |v: &kineme::Vocabulary| -> Vec<u64> {
+        let motions = v.primitives().iter().flat_map(|p| &p.exemplars);
+        motions
+            .flat_map(|e| {
+                e.motion
+                    .poses()
+                    .iter()
+                    .chain(e.motion.root(0).position.iter())
+            })
+            .map(|x| x.to_bits())
+            .collect()
+    };
+    assert_eq!(bits(&back), bits(&vocabulary));
+    assert_eq!(
+        kineme_formats::vocabulary::write(&back, "v").unwrap(),
+        bytes
+    );
+}
+
+#[test]
+fn vocabularies_of_unknown_bodies_are_refused() {
+    let error = kineme_formats::vocabulary::read("v", &example().write("v").unwrap());
+    refused(
+        "coordinates",
+        &error.unwrap_err(),
+        Place::File,
+        "3 coordinates",
+    );
+    let mut stranger = example();
+    stranger.meta.body = "atlas".to_string();
+    let error = kineme_formats::vocabulary::read("v", &stranger.write("v").unwrap());
+    refused("body", &error.unwrap_err(), Place::File, "`atlas`");
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use super::resample::places;
 use super::track::Track;
 use crate::error::{Error, Result};
 use crate::math::rotation::{exp, log_near};
@@ -83,9 +84,9 @@ impl Motion {
         self.roots.len()
     }
 
-    /// Seconds from the first to the end of the last frame.
+    /// Seconds from the first to the last frame: 0 for a single one.
     pub fn duration_secs(&self) -> f64 {
-        self.frames() as f64 / self.rate_hz
+        (self.frames() - 1) as f64 / self.rate_hz
     }
 
     /// The pose at a frame.
@@ -142,54 +143,38 @@ impl Motion {
     /// A ball whose two names for a rotation change between frames is interpolated the short way.
     ///
     /// # Errors
-    /// When the rate is not positive.
+    /// When the rate is not positive, or would make more than a million frames of fewer.
     pub fn resampled(&self, rate_hz: f64) -> Result<Self> {
-        if !(rate_hz.is_finite() && rate_hz > 0.0) {
-            return Err(Error::invalid(format!(
-                "a rate must be positive, found {rate_hz} Hz"
-            )));
-        }
-        let last = self.frames() - 1;
-        let count = ((last as f64 / self.rate_hz) * rate_hz + 1e-9).floor() as usize + 1;
-        let dof = self.skeleton.dof();
+        let places = places(self.frames(), self.rate_hz, rate_hz)?;
         let balls: Vec<_> = (0..self.skeleton.joints().len())
             .map(|j| self.skeleton.coordinates(j))
             .filter(|at| at.len() == 3)
             .collect();
-        let mut poses = Vec::with_capacity(count * dof);
-        let mut roots = Vec::with_capacity(count);
-        for i in 0..count {
-            // Rounding must not mix a neighbour into a frame that is hit exactly.
-            let place = i as f64 * self.rate_hz / rate_hz;
-            let place = if (place - place.round()).abs() < 1e-9 {
-                place.round()
-            } else {
-                place
-            };
-            let a = (place.floor() as usize).min(last);
-            let b = (a + 1).min(last);
-            let s = place - a as f64;
-            let blend = |x: f64, y: f64| x + (y - x) * s;
+        let mut poses = Vec::with_capacity(places.len() * self.skeleton.dof());
+        let mut roots = Vec::with_capacity(places.len());
+        for p in places {
+            let blend = |x: f64, y: f64| x + (y - x) * p.share;
             let first = poses.len();
-            poses.extend(
-                self.pose(a)
-                    .iter()
-                    .zip(self.pose(b))
-                    .map(|(x, y)| blend(*x, *y)),
-            );
+            let pair = self.pose(p.before).iter().zip(self.pose(p.after));
+            poses.extend(pair.map(|(x, y)| blend(*x, *y)));
             for ball in &balls {
                 let at = |f: usize| Vector3::from_column_slice(&self.pose(f)[ball.clone()]);
-                let (x, y) = (at(a), at(b));
+                let (x, y) = (at(p.before), at(p.after));
                 if (y - x).norm() > std::f64::consts::PI {
-                    let v = x + (log_near(&exp(&y), &x) - x) * s;
-                    let v = if s < 0.5 { v } else { log_near(&exp(&v), &y) };
+                    let v = x + (log_near(&exp(&y), &x) - x) * p.share;
+                    let nearer_first = p.share < 0.5;
+                    let v = if nearer_first {
+                        v
+                    } else {
+                        log_near(&exp(&v), &y)
+                    };
                     poses[first + ball.start..first + ball.end].copy_from_slice(v.as_slice());
                 }
             }
-            let (ra, rb) = (self.root(a), self.root(b));
+            let (a, b) = (self.root(p.before), self.root(p.after));
             roots.push(Root {
-                position: ra.position + (rb.position - ra.position) * s,
-                yaw: blend(ra.yaw, rb.yaw),
+                position: a.position + (b.position - a.position) * p.share,
+                yaw: blend(a.yaw, b.yaw),
             });
         }
         Self::new(

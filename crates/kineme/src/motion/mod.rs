@@ -4,6 +4,8 @@ mod activity;
 mod body_motion;
 mod from_motion;
 mod recording;
+mod resample;
+mod source;
 mod track;
 
 pub use activity::{CENTROID_DIMS, STACKED_DIMS};

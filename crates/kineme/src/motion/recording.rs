@@ -232,6 +232,12 @@ impl Recording {
         }
     }
 
+    /// The same with another source, known to be valid.
+    pub(super) fn sourced(mut self, source: Source) -> Self {
+        self.source = source;
+        self
+    }
+
     /// The recording's name, as `info` prints it: `set.zip/inner/walk.bvh`.
     pub fn name(&self) -> &str {
         &self.name
@@ -257,9 +263,9 @@ impl Recording {
         self.frames
     }
 
-    /// Seconds from the first to the end of the last frame.
+    /// Seconds from the first to the last frame: 0 for a single one.
     pub fn duration_secs(&self) -> f64 {
-        self.frames as f64 / self.rate_hz
+        (self.frames - 1) as f64 / self.rate_hz
     }
 
     /// Degrees of freedom of the file's skeleton.

@@ -1,0 +1,112 @@
+//! Where results go: never over what is there without leave, never outside the folder that was named.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use kineme_formats::output::Existing;
+
+use crate::args::Global;
+use crate::failure::Failure;
+
+/// What the command line says about files that exist.
+pub fn existing(global: &Global) -> Existing {
+    if global.force {
+        Existing::Replace
+    } else {
+        Existing::Keep
+    }
+}
+
+/// Refuses, before any work, what would be refused after it.
+pub fn refuse_existing<'a>(
+    paths: impl IntoIterator<Item = &'a Path>,
+    global: &Global,
+) -> Result<(), Failure> {
+    let mut paths = paths.into_iter();
+    match paths.find(|path| path.symlink_metadata().is_ok()) {
+        Some(path) if !global.force => {
+            let message = format!("{} exists already", path.display());
+            Err(Failure::usage(message).hint("--force overwrites it"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A failure to write is no unreadable input.
+pub fn unwritten(error: kineme_formats::FormatError) -> Failure {
+    Failure::failed(error.to_string())
+}
+
+/// Paths below a folder for motions of these names, which lie below `root`: the same folders, with another extension.
+/// Names that would meet keep their own extension, too.
+pub fn mirrored(names: &[&str], root: &str, extension: &str) -> Vec<PathBuf> {
+    let inner: Vec<PathBuf> = names
+        .iter()
+        .map(|name| {
+            let below = name.strip_prefix(root).unwrap_or(name);
+            // An archive's author must not choose where we write: `..` and roots are dropped.
+            let parts = below.split(['/', '\\']);
+            parts
+                .filter(|part| !matches!(*part, "" | "." | "..") && !part.contains(':'))
+                .collect()
+        })
+        .collect();
+    let short: Vec<PathBuf> = inner.iter().map(|p| p.with_extension(extension)).collect();
+    let mut taken: BTreeMap<PathBuf, usize> = BTreeMap::new();
+    for path in &short {
+        *taken.entry(lowered(path)).or_default() += 1;
+    }
+    let mut used = BTreeMap::new();
+    inner
+        .iter()
+        .zip(short)
+        .map(|(inner, short)| {
+            let mut path = short;
+            if taken[&lowered(&path)] > 1 {
+                path = inner.clone();
+                path.as_mut_os_string().push(format!(".{extension}"));
+            }
+            let again = used.entry(lowered(&path)).or_insert(0);
+            *again += 1;
+            if *again > 1 {
+                path = path.with_extension(format!("{again}.{extension}"));
+            }
+            path
+        })
+        .collect()
+}
+
+/// Some file systems do not tell cases apart.
+fn lowered(path: &Path) -> PathBuf {
+    path.to_string_lossy().to_lowercase().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::mirrored;
+
+    #[test]
+    fn outputs_mirror_names_and_stay_in_their_folder() {
+        let names = [
+            "set.zip/walk/a.bvh",
+            "set.zip/walk/a.amc",
+            "set.zip/../../etc/b.bvh",
+            "set.zip/C:\\x\\c.bvh",
+            "set.zip/d",
+            "set.zip/D.csv",
+        ];
+        let found: Vec<String> = mirrored(&names, "set.zip", "bvh")
+            .iter()
+            .map(|p| p.to_string_lossy().replace('\\', "/"))
+            .collect();
+        let wanted = [
+            "walk/a.bvh.bvh",
+            "walk/a.amc.bvh",
+            "etc/b.bvh",
+            "x/c.bvh",
+            "d.bvh",
+            "D.csv.bvh",
+        ];
+        assert_eq!(found, wanted);
+    }
+}

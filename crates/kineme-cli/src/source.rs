@@ -1,0 +1,264 @@
+//! INPUT of every verb: read in parallel, told in order.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use kineme::retargeting::{Profile, retarget};
+use kineme::{Motion, Recording, Skeleton};
+use kineme_formats::input::{Entry, Inputs, ReadOptions};
+use rayon::prelude::*;
+
+use crate::args::ReadArgs;
+use crate::failure::{Failure, complain};
+use crate::progress;
+use crate::warnings::Warnings;
+
+/// The motions of the command line, and how to read them.
+pub struct Source {
+    /// What was found.
+    pub inputs: Inputs,
+    keep_going: bool,
+    profile: Option<UserProfile>,
+}
+
+/// A profile with what it says of axes and unit.
+struct UserProfile {
+    profile: Profile,
+    up: Option<kineme::math::rotation::Axis>,
+    unit_metres: Option<f64>,
+}
+
+/// What came of every motion, in the order of the inputs.
+pub struct Read<T> {
+    /// Of those that could be read. Without `--keep-going` these end before the first that could not.
+    pub items: Vec<T>,
+    /// Of those that could not.
+    pub failures: Vec<Failure>,
+    /// How many motions there were.
+    pub of: usize,
+    keep_going: bool,
+}
+
+impl<T> Read<T> {
+    /// Ends the run when a motion could not be read and that is not to be skipped, or when none could.
+    pub fn unless_failed(mut self) -> Result<Self, Failure> {
+        if self.failures.is_empty() || (self.keep_going && !self.items.is_empty()) {
+            return Ok(self);
+        }
+        if self.keep_going {
+            self.print_skipped();
+            return Err(Failure::unreadable("no input could be read"));
+        }
+        let failure = self.failures.swap_remove(0);
+        Err(if self.of > 1 {
+            failure.or_hint("--keep-going skips what cannot be read")
+        } else {
+            failure
+        })
+    }
+
+    /// Lists what was skipped on stderr; the exit code of a run that got so far.
+    pub fn print_skipped(&self) -> u8 {
+        for failure in &self.failures {
+            failure.print();
+        }
+        if self.failures.is_empty() {
+            return 0;
+        }
+        let count = self.failures.len();
+        complain(&format!("skipped {count} of {} motions", self.of));
+        crate::failure::UNREADABLE
+    }
+}
+
+impl Source {
+    /// Finds the motions of INPUT and settles how to read them.
+    pub fn open<P: AsRef<Path>>(paths: &[P], args: &ReadArgs) -> Result<Self, Failure> {
+        let profile = args.profile.as_deref().map(profile).transpose()?;
+        let options = ReadOptions {
+            asf: args.asf.clone(),
+            rates: args.input_rate.clone().unwrap_or_default(),
+        };
+        let inputs = Inputs::resolve(paths, &options)?;
+        for warning in &inputs.warnings {
+            complain(&format!("warning: {warning}"));
+        }
+        if inputs.ignored > 0 {
+            complain(&format!(
+                "{} files are no motion format and were ignored",
+                inputs.ignored
+            ));
+        }
+        Ok(Self {
+            inputs,
+            keep_going: args.keep_going,
+            profile,
+        })
+    }
+
+    /// Works on every motion of `entries`, on all threads. Once one has failed, later ones are not begun, unless they
+    /// are to be skipped.
+    pub fn each<T: Send>(
+        &self,
+        entries: &[&Entry],
+        what: &'static str,
+        work: impl Fn(&Entry) -> Result<T, Failure> + Sync,
+    ) -> Read<T> {
+        let bar = progress::bar(entries.len(), what);
+        let first_failed = AtomicUsize::new(usize::MAX);
+        let results: Vec<Option<Result<T, Failure>>> = entries
+            .par_iter()
+            .with_max_len(1)
+            .enumerate()
+            .map(|(i, entry)| {
+                if !self.keep_going && first_failed.load(Ordering::Relaxed) < i {
+                    return None;
+                }
+                let result = work(entry);
+                if result.is_err() {
+                    first_failed.fetch_min(i, Ordering::Relaxed);
+                }
+                bar.inc(1);
+                Some(result)
+            })
+            .collect();
+        bar.finish_and_clear();
+        let mut read = Read {
+            items: Vec::new(),
+            failures: Vec::new(),
+            of: entries.len(),
+            keep_going: self.keep_going,
+        };
+        for result in results.into_iter().flatten() {
+            match result {
+                Ok(item) => read.items.push(item),
+                Err(failure) => {
+                    read.failures.push(failure);
+                    if !self.keep_going {
+                        break;
+                    }
+                }
+            }
+        }
+        read
+    }
+
+    /// A recording in the axes and unit that the profile says.
+    pub fn read(&self, entry: &Entry) -> Result<Recording, Failure> {
+        self.in_axes(entry.read()?)
+    }
+
+    /// As [`Self::read`], with the BLAKE3 of the file.
+    pub fn read_hashed(&self, entry: &Entry) -> Result<(Recording, String), Failure> {
+        let (recording, hash) = entry.read_hashed()?;
+        Ok((self.in_axes(recording)?, hash))
+    }
+
+    fn in_axes(&self, recording: Recording) -> Result<Recording, Failure> {
+        let Some(user) = &self.profile else {
+            return Ok(recording);
+        };
+        let source = recording.source();
+        let up = user.up.unwrap_or(source.up);
+        let unit = user.unit_metres.unwrap_or(source.unit_metres);
+        if (up, unit) == (source.up, source.unit_metres) {
+            return Ok(recording);
+        }
+        let name = recording.name().to_owned();
+        recording
+            .reread(up, unit)
+            .map_err(|e| Failure::unreadable(format!("{name}: {e}")))
+    }
+
+    /// The profile of the command line.
+    pub fn profile(&self) -> Option<&Profile> {
+        self.profile.as_ref().map(|u| &u.profile)
+    }
+
+    /// A recording in the joints of a body, and what there is to warn of.
+    pub fn retarget(
+        &self,
+        recording: &Recording,
+        body: &Arc<Skeleton>,
+    ) -> Result<(Motion, Vec<String>), Failure> {
+        let done = retarget(recording, body, self.profile())
+            .map_err(|e| Failure::unreadable(format!("{}: {e}", recording.name())))?;
+        let mut warnings = recording.source().warnings.clone();
+        if done.profile == "guessed" {
+            let names: Vec<&str> = recording.joints().iter().map(|j| j.name.as_str()).collect();
+            warnings.push(format!(
+                "roles guessed from the names of the {} joints; --profile FILE says them",
+                names.len()
+            ));
+        }
+        if !done.unobserved.is_empty() {
+            let roles: Vec<&str> = done.unobserved.iter().map(|r| r.name()).collect();
+            warnings.push(format!("not observed, stays neutral: {}", roles.join(", ")));
+        }
+        if done.filled > 0.0 {
+            warnings.push(format!(
+                "{:.1} % of the points missing and filled from their neighbours in time",
+                100.0 * done.filled
+            ));
+        }
+        Ok((done.motion, warnings))
+    }
+}
+
+/// Tells the warnings of motions, each kind once.
+pub fn print_warnings<'a>(warned: impl IntoIterator<Item = (&'a str, &'a [String])>) {
+    let mut warnings = Warnings::default();
+    for (motion, texts) in warned {
+        for text in texts {
+            warnings.add(motion, text);
+        }
+    }
+    warnings.print();
+}
+
+/// The body that `--body` names.
+pub fn body(name: &str) -> Result<Arc<Skeleton>, Failure> {
+    let lower = name.to_ascii_lowercase();
+    if [".xml", ".mjcf", ".urdf"]
+        .iter()
+        .any(|e| lower.ends_with(e))
+    {
+        return Err(Failure::usage(format!(
+            "`{name}`: bodies from MJCF and URDF files are not in this version"
+        ))
+        .hint("--body ares or --body adonis"));
+    }
+    let skeleton = kineme::body(name).map_err(|e| Failure::usage(e.to_string()))?;
+    Ok(Arc::new(skeleton))
+}
+
+/// The built-in profile of this name, else the file.
+fn profile(name: &str) -> Result<UserProfile, Failure> {
+    let unknown = match Profile::named(name) {
+        Ok(profile) => {
+            return Ok(UserProfile {
+                profile,
+                up: None,
+                unit_metres: None,
+            });
+        }
+        Err(unknown) => unknown,
+    };
+    let bytes = match std::fs::read(name) {
+        Ok(bytes) => bytes,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+            return Err(Failure::usage(unknown.to_string()));
+        }
+        Err(e) => return Err(Failure::unreadable(format!("{name}: {e}"))),
+    };
+    let read = kineme_formats::profile::parse(name, &bytes)?;
+    Ok(UserProfile {
+        profile: Profile {
+            name: read.name,
+            roles: read.roles,
+        },
+        up: read.up,
+        unit_metres: read.unit_metres,
+    })
+}
