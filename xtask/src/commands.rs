@@ -165,6 +165,47 @@ fn seconds(time: Duration) -> String {
     format!("{:.1} s", time.as_secs_f64())
 }
 
+/// The line of `docs/derivation.md` below which the tables stand.
+const TABLES: &str = "<!-- tables: cargo xtask repro -->";
+
+/// Computes the tables of `docs/derivation.md` again and puts them below its mark.
+pub fn repro(root: &Path, corpus: Option<&Path>) -> Result<(), String> {
+    let corpus = match (corpus, std::env::var_os("KINEME_DATA")) {
+        (Some(given), _) => given.to_path_buf(),
+        (None, Some(data)) => Path::new(&data).join("mocap"),
+        (None, None) => root.join("../shared/data/mocap"),
+    };
+    let page = root.join("docs/derivation.md");
+    let text = std::fs::read_to_string(&page).map_err(|e| format!("{}: {e}", page.display()))?;
+    let (above, _) = text
+        .split_once(TABLES)
+        .ok_or_else(|| format!("{}: no line `{TABLES}`", page.display()))?;
+    let mut command = Command::new("cargo");
+    command.current_dir(root).args([
+        "run",
+        "--release",
+        "--quiet",
+        "--package",
+        "kineme-paper",
+        "--example",
+        "derivation_table",
+        "--",
+    ]);
+    let output = command
+        .arg(&corpus)
+        .stderr(std::process::Stdio::inherit())
+        .output()
+        .map_err(|e| format!("cargo: {e}"))?;
+    if !output.status.success() {
+        return Err(format!("no tables from {}", corpus.display()));
+    }
+    let tables = String::from_utf8_lossy(&output.stdout);
+    std::fs::write(&page, format!("{above}{TABLES}\n{tables}"))
+        .map_err(|e| format!("{}: {e}", page.display()))?;
+    println!("{} is up to date", page.display());
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::fuzz_arguments;

@@ -183,3 +183,63 @@ fn three_conversions_of_one_trial_agree_in_body_coordinates() {
         }
     }
 }
+
+#[test]
+fn positions_alone_give_the_arms_of_the_rotations() {
+    let Some(data) = common::data() else { return };
+    for body in ["ares", "adonis"] {
+        let body = Arc::new(kineme::body(body).expect("a body"));
+        for name in [
+            "cmu-mb.zip/cmu-mb/02/02_05.bvh",
+            "cmu-daz.zip/cmu-daz/martial/07.bvh",
+            "bandai-namco-1.zip/bandai-namco-1/dataset-1_bye_active_001.bvh",
+            "bandai-namco-2.zip/bandai-namco-2/dataset-2_wave-right-hand_youthful_001.bvh",
+            "cmu-lifeforms.zip/cmu-lifeforms/006/006_03.bvh",
+        ] {
+            let recording = read(&data, name);
+            let mut table = Vec::new();
+            let frame = kineme_formats::positions::Frame::Metres;
+            kineme_formats::positions::write(&recording, frame, &mut table).expect("a table");
+            let rate = Some(recording.rate_hz());
+            let bare = kineme_formats::tables::positions::parse("table.csv", &table, rate)
+                .expect("read back");
+            let a = retarget(&recording, &body, None).expect("rotations").motion;
+            let b = retarget(&bare, &body, None).expect("positions").motion;
+            let elbows: Vec<usize> = coordinates(&body, |j| j.ends_with("elbow"))
+                .into_values()
+                .flatten()
+                .collect();
+            let every: Vec<(usize, usize)> = (0..a.frames()).map(|f| (f, f)).collect();
+            let bent_elbows = rms(&a, &b, &every, &elbows);
+            // The twist of a straight arm is no fact of positions, so shoulders are compared where the elbow is bent.
+            let mut shoulders = Vec::new();
+            for side in ["left", "right"] {
+                let of = |joint: &str| {
+                    coordinates(&body, |j| j == format!("{side}_{joint}"))
+                        .into_values()
+                        .flatten()
+                };
+                let elbow = body.joint(&format!("{side}_elbow")).expect("an elbow");
+                let bent: Vec<(usize, usize)> = every
+                    .iter()
+                    .copied()
+                    .filter(|&(f, _)| {
+                        let turn = body.rotation(elbow, &a.pose(f)[body.coordinates(elbow)]);
+                        turn.angle() > 25f64.to_radians()
+                    })
+                    .collect();
+                if !bent.is_empty() {
+                    shoulders.push(rms(&a, &b, &bent, &of("shoulder").collect::<Vec<_>>()));
+                }
+            }
+            println!(
+                "{} {name}: elbows {bent_elbows:.3}, shoulders {shoulders:.3?} degrees",
+                body.name()
+            );
+            assert!(
+                bent_elbows <= 2.0 && shoulders.iter().all(|s| *s <= 2.0),
+                "{name}"
+            );
+        }
+    }
+}

@@ -1,7 +1,5 @@
 //! Derivation on real people: the classes are hidden, groups are found, and only then compared with the classes.
 
-use std::collections::BTreeMap;
-
 use kineme::Motion;
 use kineme::clustering::{Density, hdbscan};
 use kineme::derivation::{Cut, Derivation, Derived, Segment, SegmentDistances};
@@ -165,15 +163,7 @@ impl<'a> Clips<'a> {
     /// # Errors
     /// When a step refuses its settings.
     pub fn isomap_hdbscan(&self, size: usize) -> Result<Score> {
-        let none = vec![None; self.distances.len()];
-        let graph = NeighbourGraph::segmented(&self.distances, &none, &SpatioTemporal::isomap(8))?;
-        let options = EmbedOptions {
-            dimension: Some(6),
-            ..EmbedOptions::default()
-        };
-        let (embedding, _) = embed(&graph, &options)?;
-        let distances = DistanceMatrix::euclidean(&embedding.coordinates, embedding.dimension)?;
-        let labels = hdbscan(&distances, &Density::of_size(size))?;
+        let labels = isomap_hdbscan(&self.distances, size)?;
         Ok(Score::of(&labels, &self.set.labels))
     }
 
@@ -206,63 +196,82 @@ pub struct Annotation {
     pub rate_hz: f64,
 }
 
-/// Frame-wise scores of a derivation from continuous recordings: of its primitives and of its behaviours. A step in no
-/// segment counts with its whole gap as a cluster of its own.
-pub fn frame_scores(derived: &Derived, motions: &[Motion], truth: &[Annotation]) -> (Score, Score) {
+/// Frame-wise score of labelled segments of continuous recordings. A step in no segment counts with its whole gap as a
+/// cluster of its own.
+pub fn frame_score(
+    segments: &[Segment],
+    labels: &[Option<usize>],
+    motions: &[Motion],
+    truth: &[Annotation],
+) -> Score {
     let mut classes = Vec::new();
-    let mut items: Vec<usize> = Vec::new();
-    let mut groups: BTreeMap<usize, Option<usize>> = BTreeMap::new();
-    let mut gap = derived.segments.len();
+    let mut found: Vec<usize> = Vec::new();
+    let groups = labels.iter().flatten().max().map_or(0, |m| m + 1);
+    let mut gap = groups + segments.len();
+    let mut noise = 0;
     for (m, annotation) in truth.iter().enumerate() {
         let rate = motions[m].rate_hz();
         let mut inside = true;
         for (step, &class) in annotation.labels.iter().enumerate() {
             let frame = ((step as f64 + 0.5) / annotation.rate_hz * rate) as usize;
-            let segment = derived
-                .segments
-                .iter()
-                .position(|s| s.motion == m && s.frames.contains(&frame));
-            let item = match segment {
-                Some(s) => {
-                    inside = true;
-                    s
-                }
-                None => {
-                    if inside {
-                        gap += 1;
-                        inside = false;
-                    }
-                    gap
-                }
-            };
-            let label = segment.and_then(|s| derived.labels[s]);
-            groups.insert(item, label);
-            items.push(item);
+            let within = |s: &Segment| s.motion == m && s.frames.contains(&frame);
+            let segment = segments.iter().position(within);
+            gap += usize::from(segment.is_none() && inside);
+            inside = segment.is_some();
+            let label = segment.and_then(|s| labels[s]);
+            noise += usize::from(label.is_none());
+            found.push(label.or(segment.map(|s| groups + s)).unwrap_or(gap));
             classes.push(class);
         }
     }
-    let n = derived.groups.len();
-    let labelled = |of: &dyn Fn(usize) -> usize| -> Vec<usize> {
-        items
-            .iter()
-            .map(|&i| groups[&i].map_or(n + i, of))
-            .collect()
+    let a = agreement(&found, &classes);
+    Score {
+        ari: a.ari,
+        nmi: a.nmi,
+        groups,
+        noise: noise as f64 / found.len().max(1) as f64,
+    }
+}
+
+/// Frame-wise scores of a derivation from continuous recordings: of its primitives and of its behaviours.
+pub fn frame_scores(derived: &Derived, motions: &[Motion], truth: &[Annotation]) -> (Score, Score) {
+    let score = |labels: &[Option<usize>]| frame_score(&derived.segments, labels, motions, truth);
+    let behavior = |l: &Option<usize>| l.map(|g| derived.behaviors.of_group[g]);
+    let behaviors: Vec<Option<usize>> = derived.labels.iter().map(behavior).collect();
+    (score(&derived.labels), score(&behaviors))
+}
+
+/// Labels of a derivation's segments by the baselines: warping distances and HDBSCAN, plain Isomap and HDBSCAN, and
+/// k-means with `classes` clusters; smallest group `size`.
+///
+/// # Errors
+/// When a step refuses its settings.
+pub fn baselines(
+    derived: &Derived,
+    sequences: &[Vec<f64>],
+    classes: usize,
+    size: usize,
+) -> Result<[Vec<Option<usize>>; 3]> {
+    let SegmentDistances::All(distances) = &derived.distances else {
+        return Err("baselines need the distances of all pairs".into());
     };
-    let noise = items.iter().filter(|i| groups[i].is_none()).count() as f64 / items.len() as f64;
-    let score = |labels: Vec<usize>, groups: usize| {
-        let a = agreement(&labels, &classes);
-        Score {
-            ari: a.ari,
-            nmi: a.nmi,
-            groups,
-            noise,
-        }
+    let kmeans = kmeans(sequences, classes, 0);
+    Ok([
+        hdbscan(distances, &Density::of_size(size))?,
+        isomap_hdbscan(distances, size)?,
+        kmeans.into_iter().map(Some).collect(),
+    ])
+}
+
+/// Plain Isomap (K 8, six axes) and HDBSCAN on its coordinates.
+fn isomap_hdbscan(distances: &DistanceMatrix, size: usize) -> Result<Vec<Option<usize>>> {
+    let none = vec![None; distances.len()];
+    let graph = NeighbourGraph::segmented(distances, &none, &SpatioTemporal::isomap(8))?;
+    let options = EmbedOptions {
+        dimension: Some(6),
+        ..EmbedOptions::default()
     };
-    (
-        score(labelled(&|g| g), n),
-        score(
-            labelled(&|g| derived.behaviors.of_group[g]),
-            derived.behaviors.items.len(),
-        ),
-    )
+    let (embedding, _) = embed(&graph, &options)?;
+    let embedded = DistanceMatrix::euclidean(&embedding.coordinates, embedding.dimension)?;
+    Ok(hdbscan(&embedded, &Density::of_size(size))?)
 }

@@ -9,7 +9,7 @@ use kineme::derivation::{Cut, Derivation, SecondLevel};
 use kineme::math::statistics::mean_and_deviation;
 use kineme::segmentation::Segmenter;
 
-use crate::derivation::{Annotation, Clips, Order, Score, frame_scores};
+use crate::derivation::{Annotation, Clips, Order, Score, baselines, frame_score, frame_scores};
 use crate::sets::{IndexRow, LabelledSet, Result, index, load};
 
 /// Performances drawn for each row.
@@ -189,8 +189,37 @@ fn continuous(
         settings.second_level = SecondLevel::Alternation;
         settings.c_ctn = 1.0;
         row(
-            "baseline: pendulum, no temporal neighbours, alternation",
+            "pendulum, no temporal neighbours (c 1), alternation",
             &settings,
+        )?;
+    }
+    let settings = Derivation::new(Cut::Segmenter {
+        segmenter: Segmenter::default(),
+        target_secs: None,
+    });
+    let derived = settings.run(&set.motions, &mut |_| {})?;
+    let sequences = settings.sequences(&set.motions, &derived.segments);
+    let classes = truth
+        .iter()
+        .flat_map(|t| &t.labels)
+        .max()
+        .map_or(0, |m| m + 1);
+    let size = derived.neighbourhood.min_group;
+    let names = [
+        "warping distance + HDBSCAN",
+        "plain Isomap (K 8, 6-D) + HDBSCAN",
+        "k-means with the true number of classes",
+    ];
+    let labels = baselines(&derived, &sequences, classes, size)?;
+    for (name, labels) in names.iter().zip(labels) {
+        let score = frame_score(&derived.segments, &labels, &set.motions, &truth);
+        writeln!(
+            out,
+            "| baseline: pendulum, {name} | {:.2} | - | {} | {} | - | {:.0} % |",
+            score.ari,
+            derived.segments.len(),
+            score.groups,
+            100.0 * score.noise
         )?;
     }
     Ok(())

@@ -2,8 +2,12 @@
 
 mod oracles;
 
-use kineme::clustering::{Density, SweepAndPrune, Width, hdbscan, sweep_and_prune};
-use kineme::math::distances::DistanceMatrix;
+use kineme::clustering::{
+    Density, SweepAndPrune, Width, hdbscan, hdbscan_judged, mean_silhouette, silhouettes,
+    sweep_and_prune,
+};
+use kineme::math::distances::{DistanceMatrix, Neighbours};
+use kineme::math::local_scale::{locally_scaled, locally_scaled_lists};
 use kineme::math::partition::{UnionFind, renumbered};
 use oracles::{numbers, oracle};
 use proptest::prelude::*;
@@ -279,4 +283,107 @@ fn broken_input_is_refused() {
     for (what, error) in results {
         assert!(error.is_some_and(|e| e.is_invalid()), "{what}");
     }
+}
+
+/// Points of three tight pairs of blobs: two levels of groups.
+fn pairs_of_blobs() -> (Vec<f64>, Vec<usize>) {
+    let mut points = Vec::new();
+    let mut truth = Vec::new();
+    for pair in 0..3 {
+        for half in 0..2 {
+            for i in 0..12 {
+                let (dx, dy) = (f64::from(i % 4) * 0.1, f64::from(i / 4) * 0.1);
+                points.extend([f64::from(pair) * 40.0 + f64::from(half) * 4.0 + dx, dy]);
+                truth.push((pair * 2 + half) as usize);
+            }
+        }
+    }
+    (points, truth)
+}
+
+#[test]
+fn silhouettes_are_those_of_the_definition() {
+    // Two items at 0 and 1, two at 10 and 12, one without a group.
+    let points = [0.0, 1.0, 10.0, 12.0, 5.0];
+    let distances = DistanceMatrix::euclidean(&points, 1).unwrap();
+    let labels = [Some(0), Some(0), Some(1), Some(1), None];
+    let expected = [
+        (11.0 - 1.0) / 11.0,
+        (10.0 - 1.0) / 10.0,
+        (9.5 - 2.0) / 9.5,
+        (11.5 - 2.0) / 11.5,
+    ];
+    let found = silhouettes(&distances, &labels);
+    for (f, e) in found.iter().zip(expected) {
+        assert!((f.unwrap() - e).abs() < 1e-12, "{f:?} {e}");
+    }
+    assert_eq!(found[4], None);
+    let mean = expected.iter().sum::<f64>() / 5.0;
+    assert!((mean_silhouette(&distances, &labels) - mean).abs() < 1e-12);
+    assert_eq!(mean_silhouette(&distances, &[Some(0); 5]), -1.0);
+    // Alone in its group: neither near nor far.
+    let alone = [Some(0), Some(0), Some(0), Some(1), None];
+    assert_eq!(silhouettes(&distances, &alone)[3], Some(0.0));
+}
+
+#[test]
+fn judged_groups_are_never_judged_worse_than_unlimited_ones() {
+    for seed in 0..12 {
+        let points: Vec<f64> = {
+            let mut random = Pcg64::seed_from_u64(seed);
+            (0..160)
+                .map(|i| f64::from(i % 5) * 3.0 + random.random::<f64>() * (1.0 + f64::from(i % 3)))
+                .collect()
+        };
+        let distances = DistanceMatrix::euclidean(&points, 2).unwrap();
+        let density = Density::of_size(5);
+        let plain = hdbscan(&distances, &density).unwrap();
+        let judged = hdbscan_judged(&distances, &density).unwrap();
+        let quality = |labels: &[Option<usize>]| mean_silhouette(&distances, labels);
+        assert!(quality(&judged) >= quality(&plain) - 1e-12, "seed {seed}");
+    }
+}
+
+#[test]
+fn a_limit_parts_large_groups() {
+    let (points, truth) = pairs_of_blobs();
+    let distances = DistanceMatrix::euclidean(&points, 2).unwrap();
+    let limited = Density {
+        max_cluster_size: Some(15),
+        ..Density::of_size(5)
+    };
+    let labels = hdbscan(&distances, &limited).unwrap();
+    let truth: Vec<Option<usize>> = truth.into_iter().map(Some).collect();
+    assert_eq!(labels, truth);
+}
+
+#[test]
+fn local_scaling_makes_groups_of_unlike_density_alike() {
+    // The same grid, once a hundred times larger: after scaling both look the same.
+    let grid = |i: usize, step: f64, x: f64| [x + (i % 3) as f64 * step, (i / 3) as f64 * step];
+    let points: Vec<f64> = (0..9)
+        .flat_map(|i| grid(i, 1.0, 0.0))
+        .chain((0..9).flat_map(|i| grid(i, 100.0, 1e5)))
+        .collect();
+    let distances = DistanceMatrix::euclidean(&points, 2).unwrap();
+    let scaled = locally_scaled(&distances, 3).unwrap();
+    for i in 0..9 {
+        for j in 0..9 {
+            assert!(
+                (scaled.get(i, j) - scaled.get(9 + i, 9 + j)).abs() < 1e-9,
+                "{i} {j}"
+            );
+        }
+    }
+    let all = Neighbours::nearest(&distances, 17);
+    let lists = locally_scaled_lists(&all, 3).unwrap();
+    for i in 0..18 {
+        for &(j, d) in lists.of(i) {
+            assert!((d - scaled.get(i, j)).abs() < 1e-9, "{i} {j}");
+        }
+    }
+    assert!(locally_scaled(&distances, 0).is_err());
+    // Duplicates have no scale of their own and make nothing infinite.
+    let same = DistanceMatrix::from_fn(6, |_, _| 0.0).unwrap();
+    assert_eq!(locally_scaled(&same, 3).unwrap().get(0, 5), 0.0);
 }

@@ -6,11 +6,13 @@ mod groups;
 mod levels;
 mod procedure;
 mod segments;
+mod settings;
 mod vocabulary;
 
 pub use features::{Features, dims as feature_dims};
 pub use groups::{Behaviors, Group};
 pub use levels::{SecondLevel, alternation, transitions};
-pub use procedure::{Clustering, Derivation, Derived, SegmentDistances, Stage};
+pub use procedure::{Derived, SegmentDistances, Stage};
 pub use segments::{Cut, Mark, Segment, cut};
+pub use settings::{Clustering, Derivation, Neighbourhood};
 pub use vocabulary::MAX_EXEMPLARS;

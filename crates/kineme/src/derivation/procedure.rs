@@ -8,9 +8,7 @@ use crate::alignment::{
 use crate::clustering::{
     Density, IntervalClusters, SweepAndPrune, hdbscan_judged, sweep_and_prune,
 };
-use crate::embedding::{
-    EmbedOptions, Embedding, Geodesics, NeighbourGraph, SpatioTemporal, TemporalRule, embed,
-};
+use crate::embedding::{EmbedOptions, Embedding, Geodesics, NeighbourGraph, SpatioTemporal, embed};
 use crate::error::{Error, Result};
 use crate::math::distances::{DistanceMatrix, Neighbours};
 use crate::math::local_scale::{locally_scaled, locally_scaled_lists};
@@ -18,20 +16,11 @@ use crate::math::partition::renumbered;
 use crate::motion::Motion;
 use crate::primitive::Transitions;
 
-use super::features::{Features, dims};
+use super::features::dims;
 use super::groups::{Behaviors, Group, behaviors, groups};
-use super::levels::{SecondLevel, transitions};
-use super::segments::{Cut, Segment, cut};
-
-/// How segments become groups.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Clustering {
-    /// HDBSCAN on the geodesics.
-    #[default]
-    Hdbscan,
-    /// Sweep-and-prune on the embedding, as the paper has it.
-    SweepAndPrune,
-}
+use super::levels::transitions;
+use super::segments::{Segment, cut};
+use super::settings::{Clustering, Derivation, Neighbourhood};
 
 /// Above this many segments only the nearest of each are warped.
 const ALL_PAIRS: usize = 1_500;
@@ -61,92 +50,6 @@ impl Stage {
     }
 }
 
-/// The settings of a derivation.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Derivation {
-    /// Where segments come from.
-    pub cut: Cut,
-    /// What they are compared by.
-    pub features: Features,
-    /// K, the size of a neighbourhood; `None`: 3 for strokes that a segmenter found, 8 for clips and marks.
-    pub neighbours: Option<usize>,
-    /// How many nearest may be common temporal neighbours; `None`: K for strokes, twice K for clips and marks.
-    pub temporal_neighbours: Option<usize>,
-    /// What makes a neighbour a common temporal one; `None`: the successor for strokes, for clips and marks both sides
-    /// as far as both segments have them.
-    pub rule: Option<TemporalRule>,
-    /// Distances are scaled by those to the nearest of this rank, 0 for plain distances; `None`: plain for strokes, by the
-    /// fifth for clips and marks, which come from many people.
-    pub local_scale: Option<usize>,
-    /// The smallest group; `None`: 3 for strokes, 5 for clips and marks.
-    pub min_group: Option<usize>,
-    /// Divisor of distances between common temporal neighbours.
-    pub c_ctn: f64,
-    /// How the embedded segments are grouped.
-    pub clustering: Clustering,
-    /// How groups are joined to behaviours.
-    pub second_level: SecondLevel,
-    /// Seed of every random choice.
-    pub seed: u64,
-}
-
-impl Derivation {
-    /// The defaults for segments that come from `cut`.
-    pub fn new(cut: Cut) -> Self {
-        Self {
-            cut,
-            features: Features::default(),
-            neighbours: None,
-            temporal_neighbours: None,
-            rule: None,
-            local_scale: None,
-            min_group: None,
-            c_ctn: 100.0,
-            clustering: Clustering::default(),
-            second_level: SecondLevel::default(),
-            seed: 0,
-        }
-    }
-
-    fn strokes(&self) -> bool {
-        matches!(self.cut, Cut::Segmenter { .. })
-    }
-
-    /// K as it will be used.
-    pub fn neighbours(&self) -> usize {
-        self.neighbours
-            .unwrap_or(if self.strokes() { 3 } else { 8 })
-    }
-
-    /// How many nearest may be common temporal neighbours, as it will be used.
-    pub fn temporal_neighbours(&self) -> usize {
-        let sides = if self.strokes() { 1 } else { 2 };
-        self.temporal_neighbours
-            .unwrap_or(sides * self.neighbours())
-    }
-
-    /// What makes a neighbour a common temporal one, as it will be used.
-    pub fn rule(&self) -> TemporalRule {
-        let automatic = if self.strokes() {
-            TemporalRule::Forward
-        } else {
-            TemporalRule::Known
-        };
-        self.rule.unwrap_or(automatic)
-    }
-
-    /// The rank of the neighbour that distances are scaled by, as it will be used; 0 for plain distances.
-    pub fn local_scale(&self) -> usize {
-        self.local_scale
-            .unwrap_or(if self.strokes() { 0 } else { 5 })
-    }
-
-    /// The smallest group as it will be used.
-    pub fn min_group(&self) -> usize {
-        self.min_group.unwrap_or(if self.strokes() { 3 } else { 5 })
-    }
-}
-
 /// Warping distances between segments.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SegmentDistances {
@@ -166,6 +69,8 @@ pub enum SegmentDistances {
 /// All that a derivation found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Derived {
+    /// The settings that applied.
+    pub neighbourhood: Neighbourhood,
     /// The segments.
     pub segments: Vec<Segment>,
     /// Warping distances between them.
@@ -275,6 +180,7 @@ impl Derivation {
         segments: Vec<Segment>,
         watch: &mut dyn FnMut(Stage),
     ) -> Result<Derived> {
+        let around = self.neighbourhood(segments.len());
         let mut notes = Vec::new();
         if let SegmentDistances::Nearest {
             recall, candidates, ..
@@ -288,13 +194,13 @@ impl Derivation {
         watch(Stage::Embedding);
         let successors: Vec<Option<usize>> = segments.iter().map(|s| s.successor).collect();
         let options = SpatioTemporal {
-            neighbours: self.neighbours(),
-            temporal_neighbours: Some(self.temporal_neighbours()),
+            neighbours: around.neighbours,
+            temporal_neighbours: Some(around.temporal_neighbours),
             c_ctn: self.c_ctn,
-            rule: self.rule(),
+            rule: around.rule,
             ..SpatioTemporal::default()
         };
-        let graph = match (&distances, self.local_scale()) {
+        let graph = match (&distances, around.local_scale) {
             (SegmentDistances::All(matrix), 0) => {
                 NeighbourGraph::segmented(matrix, &successors, &options)?
             }
@@ -322,7 +228,7 @@ impl Derivation {
             &embedding.coordinates,
             embedding.dimension,
             &SweepAndPrune {
-                min_cluster_size: self.min_group(),
+                min_cluster_size: around.min_group,
                 seed: self.seed,
                 ..SweepAndPrune::default()
             },
@@ -330,7 +236,7 @@ impl Derivation {
         let found = match (self.clustering, &geodesics) {
             (Clustering::SweepAndPrune, _) => sweep.labels.clone(),
             (Clustering::Hdbscan, Geodesics::All(matrix)) => {
-                hdbscan_judged(matrix, &Density::of_size(self.min_group()))?
+                hdbscan_judged(matrix, &Density::of_size(around.min_group))?
             }
             (Clustering::Hdbscan, Geodesics::Landmarks(_)) => {
                 notes.push(format!(
@@ -339,7 +245,7 @@ impl Derivation {
                 ));
                 let matrix =
                     DistanceMatrix::euclidean(&embedding.coordinates, embedding.dimension)?;
-                hdbscan_judged(&matrix, &Density::of_size(self.min_group()))?
+                hdbscan_judged(&matrix, &Density::of_size(around.min_group))?
             }
         };
         let (labels, groups) = groups(&renumbered(&found), &distances, sequences);
@@ -351,7 +257,7 @@ impl Derivation {
             &successors,
             &labels,
             &groups,
-            (self.neighbours(), self.min_group()),
+            (around.neighbours, around.min_group),
         )?;
         if behaviors.largest_share > 0.5 && behaviors.items.len() > 1 {
             notes.push(format!(
@@ -360,6 +266,7 @@ impl Derivation {
             ));
         }
         Ok(Derived {
+            neighbourhood: around,
             segments,
             distances,
             embedding,
@@ -396,7 +303,7 @@ impl Derivation {
             &packed,
             &Nearest::with_radius(radius),
             &RecallGoal {
-                neighbours: self.temporal_neighbours(),
+                neighbours: self.neighbourhood(n).temporal_neighbours,
                 seed: self.seed,
                 ..RecallGoal::default()
             },

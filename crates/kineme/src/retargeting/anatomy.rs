@@ -292,6 +292,10 @@ fn limb_parts(
             Some(JointKind::Ball { reference, .. }) => *reference,
             _ => UnitQuaternion::identity(),
         },
+        single_hinge: body
+            .joints_of(limb.lower)
+            .first()
+            .is_some_and(|&j| matches!(body.joints()[j].kind, JointKind::Hinge { .. })),
         // At rest the source's frame is the identity, so its bone frame is `to_bone`, the anatomy is the resting bone.
         resting: to_bone.and_then(|turn| {
             let rest = resting?.bone(limb.upper, limb.lower)?;

@@ -21,6 +21,10 @@ const RETURN_SECS: f64 = 3.0;
 /// The same return where the source's own twist, or the foot of a straight leg, says what the twist is.
 const FOLLOW_SECS: f64 = 0.3;
 
+/// Bend (radians) from which a single hinge begins to bind the twist to its plane, and from which it does so wholly.
+const HINGE_FREE: f64 = 0.02;
+const HINGE_BOUND: f64 = 0.1;
+
 /// One frame of a limb as it was observed, all in world axes.
 #[derive(Debug, Clone, Copy)]
 pub struct LimbSample {
@@ -43,6 +47,8 @@ pub struct LimbKind {
     pub bends_forward: bool,
     /// The middle of the range of the joint between carrier and upper segment.
     pub reference: UnitQuaternion<f64>,
+    /// Whether the body's lower joint is one hinge: then only the twist can turn the lower segment out of its plane.
+    pub single_hinge: bool,
     /// The constant twist from the source's orientation to the anatomy, known from its zero pose.
     pub resting: Option<f64>,
 }
@@ -97,7 +103,15 @@ pub fn limb_frames(samples: &[LimbSample], kind: &LimbKind, rate_hz: f64) -> Lim
         .map(|(r, (plane, smoothed))| {
             let noise = noise / r.flexion.sin().max(1e-9);
             let share = r.trust / (1.0 + (noise / NOISE_HALF).powi(2));
-            let twist = smoothed + share * (plane - smoothed) + r.source;
+            let mut twist = smoothed + share * (plane - smoothed);
+            if kind.single_hinge {
+                // One hinge reaches the lower segment only in its plane, bent either way: noise or not, the bone counts.
+                let half_turns = ((twist - plane) / std::f64::consts::PI).round();
+                let in_plane = plane + half_turns * std::f64::consts::PI;
+                let bend = r.flexion.min(std::f64::consts::PI - r.flexion);
+                twist += smoothstep(HINGE_FREE, HINGE_BOUND, bend) * (in_plane - twist);
+            }
+            let twist = twist + r.source;
             r.base * UnitQuaternion::from_axis_angle(&z, twist)
         })
         .collect();
