@@ -161,7 +161,7 @@ pub enum ClusteringName {
     SweepAndPrune,
 }
 
-/// How groups are joined to behaviours.
+/// How groups are joined to behaviors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum SecondLevelName {
     /// Groups that alternate, such as out and back
@@ -207,16 +207,16 @@ pub struct DeriveArgs {
     /// Share of each segment's mean posture to disregard, 0 to 1
     #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = share)]
     pub shape: Option<f64>,
-    /// Neighbours of a segment in the graph [default: 3 for cut recordings, 8 for clips and marks]
+    /// Neighbours of a segment in the graph [default: 3 for cut recordings and more where they are many, 8 for clips and marks]
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count)]
     pub neighbours: Option<usize>,
-    /// The smallest group [default: 3 for cut recordings, 5 for clips and marks]
+    /// The smallest group [default: 3 for cut recordings and more where they are many, 5 for clips and marks]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
     pub min_size: Option<usize>,
     /// How segments are grouped
     #[arg(long, value_enum, default_value = "hdbscan", value_name = "METHOD")]
     pub clustering: ClusteringName,
-    /// How groups are joined to behaviours
+    /// How groups are joined to behaviors
     #[arg(long, value_enum, default_value = "alternation", value_name = "METHOD")]
     pub second_level: SecondLevelName,
     /// Write a page with figures into this folder

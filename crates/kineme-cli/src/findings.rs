@@ -34,7 +34,7 @@ pub struct Seconds {
     pub distances: f64,
     /// Graph, geodesics, scaling.
     pub embedding: f64,
-    /// Groups and behaviours.
+    /// Groups and behaviors.
     pub clustering: f64,
     /// All of it.
     pub total: f64,

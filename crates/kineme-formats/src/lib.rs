@@ -1,4 +1,28 @@
 //! Motion files in and out, archives, vocabulary files, and the files people write.
+//!
+//! From a folder of recordings to a vocabulary file:
+//!
+//! ```no_run
+//! use std::sync::Arc;
+//!
+//! use kineme::derivation::{Cut, Derivation};
+//! use kineme::retargeting::retarget;
+//! use kineme::segmentation::Segmenter;
+//! use kineme_formats::input::{Inputs, ReadOptions};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let body = Arc::new(kineme::ares()?);
+//! let mut motions = Vec::new();
+//! for entry in Inputs::resolve(&["captures"], &ReadOptions::default())?.entries {
+//!     motions.push(retarget(&entry.read()?, &body, None)?.motion);
+//! }
+//! let cut = Cut::Segmenter { segmenter: Segmenter::default(), target_secs: None };
+//! let derived = Derivation::new(cut).run(&motions, &mut |_stage| {})?;
+//! let vocabulary = derived.vocabulary(&motions, &|_| None)?;
+//! std::fs::write("moves.kineme", kineme_formats::vocabulary::write(&vocabulary, "moves.kineme")?)?;
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod amc;
 pub mod asf;
