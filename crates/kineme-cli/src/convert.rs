@@ -113,10 +113,9 @@ fn many(
 ) -> Result<u8, Failure> {
     let paths: Vec<PathBuf> = paths.iter().map(|p| args.out.join(p)).collect();
     refuse_existing(paths.iter().map(PathBuf::as_path), global)?;
-    let at = |name: &str| entries.iter().position(|e| e.name() == name);
-    let read = job.source.each(entries, "converting", |entry| {
+    let read = job.source.each(entries, "converting", |i, entry| {
         let mut made = job.make(entry)?;
-        let path = at(entry.name()).map_or(args.out.clone(), |i| paths[i].clone());
+        let path = paths[i].clone();
         output::write_bytes(&path, existing(global), &made.bytes).map_err(unwritten)?;
         made.bytes = Vec::new();
         Ok((made, path))

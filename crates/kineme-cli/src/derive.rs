@@ -49,7 +49,7 @@ pub fn run(args: &DeriveArgs, global: &Global) -> Result<u8, Failure> {
     if let Some((file, marks)) = &marks {
         entries = marked(&entries, file, marks)?;
     }
-    let read = source.each(&entries, "reading", |entry| {
+    let read = source.each(&entries, "reading", |_, entry| {
         let (recording, blake3) = source.read_hashed(entry)?;
         let (motion, warnings) = source.retarget(&recording, &body)?;
         Ok(Taken {

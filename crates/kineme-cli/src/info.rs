@@ -36,7 +36,7 @@ struct Axes {
 pub fn run(args: &InfoArgs, global: &Global) -> Result<u8, Failure> {
     let source = Source::open(&args.inputs, &args.read)?;
     let entries: Vec<_> = source.inputs.entries.iter().collect();
-    let read = source.each(&entries, "reading", |entry| {
+    let read = source.each(&entries, "reading", |_, entry| {
         Ok(facts(&source.read(entry)?, &source))
     });
     if global.json {

@@ -97,13 +97,13 @@ impl Source {
         })
     }
 
-    /// Works on every motion of `entries`, on all threads. Once one has failed, later ones are not begun, unless they
+    /// Works on every motion of `entries`, told with its index, on all threads. Once one has failed, later ones are not begun, unless they
     /// are to be skipped.
     pub fn each<T: Send>(
         &self,
         entries: &[&Entry],
         what: &'static str,
-        work: impl Fn(&Entry) -> Result<T, Failure> + Sync,
+        work: impl Fn(usize, &Entry) -> Result<T, Failure> + Sync,
     ) -> Read<T> {
         let bar = progress::bar(entries.len(), what);
         let first_failed = AtomicUsize::new(usize::MAX);
@@ -115,7 +115,7 @@ impl Source {
                 if !self.keep_going && first_failed.load(Ordering::Relaxed) < i {
                     return None;
                 }
-                let result = work(entry);
+                let result = work(i, entry);
                 if result.is_err() {
                     first_failed.fetch_min(i, Ordering::Relaxed);
                 }

@@ -73,10 +73,10 @@ pub fn write(
     Ok(())
 }
 
-/// As [`write`], of bytes that are there already.
+/// As [`write()`], of bytes that are there already.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_bytes(path: &Path, existing: Existing, bytes: &[u8]) -> Result<()> {
     write(path, existing, |out| {
         out.write_all(bytes).map_err(|e| {

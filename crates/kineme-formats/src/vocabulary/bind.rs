@@ -30,7 +30,7 @@ pub fn write(vocabulary: &Vocabulary, name: &str) -> Result<Vec<u8>> {
     file_of(vocabulary).write(name)
 }
 
-/// Reads the vocabulary in a file named `name` in messages: what [`write`] wrote, bit for bit.
+/// Reads the vocabulary in a file named `name` in messages: what [`write()`] wrote, bit for bit.
 ///
 /// # Errors
 /// When the file is damaged or invalid, when its body is not known, or has other coordinates than the file says.
