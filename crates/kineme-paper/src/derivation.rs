@@ -2,7 +2,7 @@
 
 use kineme::Motion;
 use kineme::clustering::{Density, hdbscan};
-use kineme::derivation::{Cut, Derivation, Derived, Segment, SegmentDistances};
+use kineme::derivation::{Cut, Derivation, Derived, Segment, SegmentDistances, cut};
 use kineme::embedding::{EmbedOptions, NeighbourGraph, SpatioTemporal, embed};
 use kineme::math::distances::DistanceMatrix;
 use kineme::math::statistics::{agreement, noise_as_singletons};
@@ -67,7 +67,7 @@ impl<'a> Clips<'a> {
     pub fn new(set: &'a LabelledSet, shape: f64) -> Result<Self> {
         let mut settings = Derivation::new(Cut::Marks(Vec::new()));
         settings.features.shape = shape;
-        let segments = separate(&set.motions);
+        let segments = cut(&set.motions, &Cut::Clips)?;
         let sequences = settings.sequences(&set.motions, &segments);
         let dims = kineme::derivation::feature_dims(set.motions[0].skeleton());
         let derived = settings.distances(&sequences, dims, &vec![None; segments.len()])?;
@@ -101,7 +101,7 @@ impl<'a> Clips<'a> {
     }
 
     fn group(&self, distances: DistanceMatrix, order: Order, seed: u64) -> Result<Derived> {
-        let mut segments = separate(&self.set.motions);
+        let mut segments = cut(&self.set.motions, &Cut::Clips)?;
         for pair in self.order(order, seed).windows(2) {
             segments[pair[0]].successor = Some(pair[1]);
         }
@@ -173,18 +173,6 @@ impl<'a> Clips<'a> {
         let labels: Vec<Option<usize>> = labels.into_iter().map(Some).collect();
         Score::of(&labels, &self.set.labels)
     }
-}
-
-fn separate(motions: &[Motion]) -> Vec<Segment> {
-    motions
-        .iter()
-        .enumerate()
-        .map(|(motion, m)| Segment {
-            motion,
-            frames: 0..m.frames(),
-            successor: None,
-        })
-        .collect()
 }
 
 /// Labels of a continuous recording at a constant rate.

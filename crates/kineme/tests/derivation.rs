@@ -230,40 +230,40 @@ fn only_successions_inside_one_recording_count() {
 
 #[test]
 fn alternation_joins_what_goes_both_ways_often_enough() {
-    let cases: [(&str, Vec<u32>, [usize; 3], [usize; 3]); 5] = [
+    // Name, counts of successions, sizes of the groups, the behaviour of each.
+    type Case = (&'static str, [u32; 9], [usize; 3], [usize; 3]);
+    let cases: [Case; 5] = [
         (
             "out and back",
-            vec![0, 4, 0, 4, 0, 0, 0, 0, 0],
+            [0, 4, 0, 4, 0, 0, 0, 0, 0],
             [5, 5, 5],
             [0, 0, 1],
         ),
         (
             "one way only",
-            vec![0, 9, 0, 0, 0, 9, 0, 0, 0],
+            [0, 9, 0, 0, 0, 9, 0, 0, 0],
             [9, 9, 9],
             [0, 1, 2],
         ),
         (
             "once back",
-            vec![0, 4, 0, 1, 0, 0, 0, 0, 0],
+            [0, 4, 0, 1, 0, 0, 0, 0, 0],
             [5, 5, 5],
             [0, 1, 2],
         ),
-        (
-            "chains",
-            vec![0, 2, 0, 2, 0, 2, 0, 2, 0],
-            [4, 4, 4],
-            [0, 0, 0],
-        ),
+        ("chains", [0, 2, 0, 2, 0, 2, 0, 2, 0], [4, 4, 4], [0, 0, 0]),
         (
             "chance among many",
-            vec![0, 2, 0, 2, 0, 0, 0, 0, 0],
+            [0, 2, 0, 2, 0, 0, 0, 0, 0],
             [40, 40, 40],
             [0, 1, 2],
         ),
     ];
     for (name, counts, sizes, expected) in cases {
-        let transitions = Transitions { counts, n: 3 };
+        let transitions = Transitions {
+            counts: counts.to_vec(),
+            n: 3,
+        };
         assert_eq!(alternation(&transitions, &sizes), expected, "{name}");
     }
 }

@@ -61,12 +61,12 @@ pub fn hdbscan(distances: &DistanceMatrix, density: &Density) -> Result<Vec<Opti
 /// Limits of the group size that [`hdbscan_judged`] tries, as shares of the items; the first is no limit.
 const LIMITS: [usize; 5] = [1, 2, 4, 8, 16];
 
-/// [`hdbscan`] with the limit of the group size that parts the items best: excess of mass alone sometimes prefers one
+/// [`hdbscan()`] with the limit of the group size that parts the items best: excess of mass alone sometimes prefers one
 /// group of nearly everything. Tried are no limit, a half, a quarter, an eighth and a sixteenth of the items; the
 /// highest mean silhouette over `distances` wins (noise counts as 0), the larger limit on a tie.
 ///
 /// # Errors
-/// As [`hdbscan`].
+/// As [`hdbscan()`].
 pub fn hdbscan_judged(distances: &DistanceMatrix, density: &Density) -> Result<Vec<Option<usize>>> {
     check(density)?;
     let len = distances.len();

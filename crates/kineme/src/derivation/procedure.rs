@@ -122,7 +122,7 @@ impl Derivation {
         self.group(&sequences, dims(body), segments, watch)
     }
 
-    /// Feature sequences of segments, each [`Features::frames`] x [`dims`].
+    /// Feature sequences of segments, each [`Features::frames`](super::Features::frames) x [`feature_dims`](super::feature_dims).
     pub fn sequences(&self, motions: &[Motion], segments: &[Segment]) -> Vec<Vec<f64>> {
         let mut of_motion: Vec<Vec<usize>> = vec![Vec::new(); motions.len()];
         for (i, s) in segments.iter().enumerate() {
@@ -259,7 +259,8 @@ impl Derivation {
             &groups,
             (around.neighbours, around.min_group),
         )?;
-        if behaviors.largest_share > 0.5 && behaviors.items.len() > 1 {
+        let merged = behaviors.items.iter().any(|b| b.primitives.len() > 1);
+        if behaviors.largest_share > 0.5 && merged {
             notes.push(format!(
                 "one behaviour holds {:.0} % of the grouped segments: alternation may have chained impure primitives",
                 100.0 * behaviors.largest_share
