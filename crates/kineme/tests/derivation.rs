@@ -430,3 +430,29 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_second_isomap_joins_only_whole_groups() {
+    let motions = [strokes(&body())];
+    let mut settings = Derivation::new(Cut::Segmenter {
+        segmenter: Segmenter::default(),
+        target_secs: None,
+    });
+    settings.second_level = SecondLevel::Isomap;
+    let derived = run(&settings, &motions);
+    let named: usize = derived
+        .behaviors
+        .items
+        .iter()
+        .map(|b| b.primitives.len())
+        .sum();
+    assert_eq!(named, derived.groups.len());
+    for (group, &behavior) in derived.groups.iter().zip(&derived.behaviors.of_group) {
+        let item = &derived.behaviors.items[behavior];
+        assert!(
+            item.primitives.contains(&group.name),
+            "{} in {item:?}",
+            group.name
+        );
+    }
+}

@@ -1,5 +1,5 @@
 //! Running the binary.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "every test file uses its part")]
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

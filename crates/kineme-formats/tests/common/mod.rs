@@ -1,5 +1,5 @@
 //! Where the data is, and small helpers.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "every test file uses its part")]
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! The second level: behaviours from sequences of primitives.
 
 use crate::clustering::{Density, hdbscan_judged};
-use crate::embedding::{EmbedOptions, Geodesics, NeighbourGraph, SpatioTemporal, embed};
+use crate::embedding::{EmbedOptions, Embedding, Geodesics, NeighbourGraph, SpatioTemporal, embed};
 use crate::error::Result;
 use crate::math::distances::DistanceMatrix;
 use crate::math::partition::UnionFind;
@@ -78,11 +78,8 @@ pub fn second_isomap(
         ..SpatioTemporal::default()
     };
     let graph = NeighbourGraph::segmented(&distances, successors, &options)?;
-    let (_, geodesics) = embed(&graph, &EmbedOptions::default())?;
-    let clusters = match &geodesics {
-        Geodesics::All(matrix) => hdbscan_judged(matrix, &Density::of_size(min_size))?,
-        Geodesics::Landmarks(_) => labels.to_vec(),
-    };
+    let (embedding, geodesics) = embed(&graph, &EmbedOptions::default())?;
+    let clusters = density_groups(&embedding, &geodesics, min_size)?;
     let found = clusters.iter().flatten().max().map_or(0, |m| m + 1);
     let mut joined = UnionFind::new(groups + found);
     for g in 0..groups {
@@ -105,4 +102,23 @@ pub fn second_isomap(
         .into_iter()
         .flatten()
         .collect())
+}
+
+/// HDBSCAN on the geodesics, or on the embedding's coordinates where only landmarks were followed.
+///
+/// # Errors
+/// When clustering refuses its settings.
+pub(super) fn density_groups(
+    embedding: &Embedding,
+    geodesics: &Geodesics,
+    min_size: usize,
+) -> Result<Vec<Option<usize>>> {
+    let density = Density::of_size(min_size);
+    match geodesics {
+        Geodesics::All(matrix) => hdbscan_judged(matrix, &density),
+        Geodesics::Landmarks(_) => {
+            let matrix = DistanceMatrix::euclidean(&embedding.coordinates, embedding.dimension)?;
+            hdbscan_judged(&matrix, &density)
+        }
+    }
 }

@@ -5,10 +5,8 @@ use rayon::prelude::*;
 use crate::alignment::{
     Band, LocalCost, Nearest, RecallGoal, Sequences, distance, nearest_to_recall, pair_distances,
 };
-use crate::clustering::{
-    Density, IntervalClusters, SweepAndPrune, hdbscan_judged, sweep_and_prune,
-};
-use crate::embedding::{EmbedOptions, Embedding, Geodesics, NeighbourGraph, SpatioTemporal, embed};
+use crate::clustering::{IntervalClusters, SweepAndPrune, sweep_and_prune};
+use crate::embedding::{EmbedOptions, Embedding, NeighbourGraph, SpatioTemporal, embed};
 use crate::error::{Error, Result};
 use crate::math::distances::{DistanceMatrix, Neighbours};
 use crate::math::local_scale::{locally_scaled, locally_scaled_lists};
@@ -18,7 +16,7 @@ use crate::primitive::Transitions;
 
 use super::features::dims;
 use super::groups::{Behaviors, Group, behaviors, groups};
-use super::levels::transitions;
+use super::levels::{density_groups, transitions};
 use super::segments::{Segment, cut};
 use super::settings::{Clustering, Derivation, Neighbourhood};
 
@@ -233,19 +231,16 @@ impl Derivation {
                 ..SweepAndPrune::default()
             },
         )?;
-        let found = match (self.clustering, &geodesics) {
-            (Clustering::SweepAndPrune, _) => sweep.labels.clone(),
-            (Clustering::Hdbscan, Geodesics::All(matrix)) => {
-                hdbscan_judged(matrix, &Density::of_size(around.min_group))?
-            }
-            (Clustering::Hdbscan, Geodesics::Landmarks(_)) => {
-                notes.push(format!(
-                    "{} segments: HDBSCAN ran on the landmark embedding instead of the geodesics",
-                    segments.len()
-                ));
-                let matrix =
-                    DistanceMatrix::euclidean(&embedding.coordinates, embedding.dimension)?;
-                hdbscan_judged(&matrix, &Density::of_size(around.min_group))?
+        let found = match self.clustering {
+            Clustering::SweepAndPrune => sweep.labels.clone(),
+            Clustering::Hdbscan => {
+                if geodesics.matrix().is_none() {
+                    notes.push(format!(
+                        "{} segments: HDBSCAN ran on the landmark embedding instead of the geodesics",
+                        segments.len()
+                    ));
+                }
+                density_groups(&embedding, &geodesics, around.min_group)?
             }
         };
         let (labels, groups) = groups(&renumbered(&found), &distances, sequences);
