@@ -10,6 +10,7 @@ mod body;
 mod clinical;
 mod joint;
 mod kinematics;
+mod mirror;
 mod parts;
 mod role;
 
