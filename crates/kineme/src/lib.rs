@@ -66,7 +66,7 @@
 //!
 //! A module imports from modules below it and from none beside it:
 //! [`math`], [`error`]; [`skeleton`], [`motion`]; [`segmentation`], [`alignment`], [`embedding`], [`clustering`],
-//! [`retargeting`]; [`primitive`]; [`derivation`], [`choreography`].
+//! [`interpolation`], [`retargeting`]; [`primitive`]; [`derivation`], [`choreography`].
 
 pub mod alignment;
 pub mod choreography;
@@ -74,6 +74,7 @@ pub mod clustering;
 pub mod derivation;
 pub mod embedding;
 pub mod error;
+pub mod interpolation;
 pub mod math;
 pub mod motion;
 pub mod primitive;
