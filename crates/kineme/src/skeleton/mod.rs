@@ -12,6 +12,7 @@ mod joint;
 mod kinematics;
 mod mirror;
 mod parts;
+mod reach;
 mod role;
 
 pub use adonis::adonis;
@@ -20,6 +21,7 @@ pub use ares::ares;
 pub use body::{Effector, Skeleton};
 pub use joint::{ClinicalAxes, Joint, JointKind, Link, Range};
 pub use kinematics::{Frame, Root};
+pub use reach::Reach;
 pub use role::Role;
 
 use crate::error::{Error, Result};
