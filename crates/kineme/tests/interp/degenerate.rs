@@ -2,7 +2,7 @@
 
 use kineme::interpolation::{Interpolator, Kernel, Method, Tail};
 
-use super::{blend, cardinal, largest_difference, methods, weights, wendland};
+use super::{blend, cardinal, largest_difference, methods, uniform, weights, wendland};
 
 fn fit(points: &[f64], n: usize, dims: usize, method: &Method) -> Interpolator {
     Interpolator::new(points, n, dims, method).expect("an interpolator")
@@ -184,4 +184,52 @@ fn refuses_what_it_cannot_fit() {
     assert!(found.is_err_and(|e| e.is_unsupported()));
     let alone = fit(&[0.5], 1, 1, &shepard);
     assert!(alone.left_out(0).is_err_and(|e| e.is_invalid()));
+}
+
+#[test]
+fn no_numbers_make_it_panic() {
+    let values = [
+        0.0,
+        1.0,
+        -1.0,
+        0.5,
+        1e-320,
+        1e-160,
+        3e-13,
+        1e150,
+        -1e150,
+        f64::MAX,
+    ];
+    let mut fitted = 0;
+    for seed in 0..600 {
+        let draw = uniform(seed, 64, 1);
+        // The first four are ordinary: half of all cases mix nothing else.
+        let among = if seed % 2 == 0 {
+            4.0
+        } else {
+            values.len() as f64
+        };
+        let value = |i: usize| values[(draw[i] * among) as usize];
+        let (n, dims) = (1 + seed as usize % 7, (seed / 7) as usize % 5);
+        let points: Vec<f64> = (0..n * dims).map(value).collect();
+        let p: Vec<f64> = (50..50 + dims).map(value).collect();
+        for method in methods() {
+            let Ok(interpolator) = Interpolator::new(&points, n, dims, &method) else {
+                continue;
+            };
+            fitted += 1;
+            let (mut w, mut g) = (vec![0.0; n], vec![0.0; n * dims]);
+            interpolator.weights_and_gradient(&p, &mut w, &mut g);
+            assert_eq!(interpolator.clamped(&p).len(), dims);
+            if seed % 2 == 0 {
+                let size: f64 = w.iter().map(|w| w.abs()).sum();
+                let sum: f64 = w.iter().sum();
+                assert!(
+                    (sum - 1.0).abs() < 1e-14 * size,
+                    "{method:?} {points:?}: {w:?}"
+                );
+            }
+        }
+    }
+    assert!(fitted > 4000, "{fitted} fitted");
 }

@@ -252,14 +252,14 @@ fn analytic_weights() {
 }
 
 #[test]
-fn the_default_support_is_twice_the_widest_gap() {
+fn the_default_support_is_four_times_the_widest_gap() {
     let check = |points: &[f64], dims: usize, wanted: f64| {
         let n = points.len().checked_div(dims).unwrap_or(3);
         let found = wendland_support(points, n, dims);
         assert!((found - wanted).abs() < 1e-15, "{points:?}: {found}");
     };
-    check(&[0.0, 0.1, 1.0], 1, 1.8);
-    check(&[0.0, 0.0, 3.0, 4.0, 0.0, 0.0], 2, 10.0);
+    check(&[0.0, 0.1, 1.0], 1, 3.6);
+    check(&[0.0, 0.0, 3.0, 4.0, 0.0, 0.0], 2, 20.0);
     check(&[0.5, 0.5], 1, 1.0);
     check(&[], 0, 1.0);
 }
