@@ -3,7 +3,9 @@
 mod angles;
 mod body_angles;
 mod hostile;
+mod manifest;
 mod msr;
+mod npz;
 mod positions;
 mod real_data;
 mod vocabulary;
