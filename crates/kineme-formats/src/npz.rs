@@ -2,7 +2,7 @@
 //!
 //! ```python
 //! motion = numpy.load("walk.npz")
-//! motion["poses"][0, motion["coordinates"] == "left_elbow"]
+//! motion["poses"][:, motion["coordinates"] == "left_shoulder_y"]
 //! ```
 //!
 //! Every archive holds `rate` (Hz, no dimension), `time` (frames; seconds from 0), `joints` (names) and `positions`
