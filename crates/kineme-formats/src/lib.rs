@@ -18,7 +18,7 @@
 //! }
 //! let cut = Cut::Segmenter { segmenter: Segmenter::default(), target_secs: None };
 //! let derived = Derivation::new(cut).run(&motions, &mut |_stage| {})?;
-//! let vocabulary = derived.vocabulary(&motions, &|_| None)?;
+//! let vocabulary = derived.vocabulary(&motions, &kineme::Modelling::default(), &|_| None)?;
 //! std::fs::write("moves.kineme", kineme_formats::vocabulary::write(&vocabulary, "moves.kineme")?)?;
 //! # Ok(())
 //! # }

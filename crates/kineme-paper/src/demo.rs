@@ -80,7 +80,7 @@ pub fn run(seed: u64, watch: &mut dyn FnMut(Stage)) -> Result<Demo> {
     });
     settings.seed = seed;
     let derived = settings.run(&motions, watch)?;
-    let vocabulary = derived.vocabulary(&motions, &|_| None)?;
+    let vocabulary = derived.vocabulary(&motions, &kineme::Modelling::default(), &|_| None)?;
 
     let of_segment: Vec<Option<&Stroke>> = derived
         .segments

@@ -20,7 +20,7 @@
 //! use kineme::choreography::{Key, perform};
 //! use kineme::derivation::{Cut, Derivation};
 //! use kineme::segmentation::Segmenter;
-//! use kineme::{Role, adonis};
+//! use kineme::{Modelling, Role, adonis};
 //!
 //! # fn main() -> kineme::Result<()> {
 //! // Key postures in degrees: the arms in turn, each time to another height, with rests between.
@@ -43,10 +43,10 @@
 //! assert_eq!(derived.groups.len(), 4); // either arm, up and down
 //!
 //! // Groups become primitives; those that alternate become a behavior.
-//! let vocabulary = derived.vocabulary(&session, &|_| None)?;
+//! let vocabulary = derived.vocabulary(&session, &Modelling::default(), &|_| None)?;
 //! for primitive in vocabulary.primitives() {
-//!     let first = &primitive.exemplars[0].provenance;
-//!     println!("{}: {} segments, as at {:.1} s", primitive.name, primitive.members, first.start_secs);
+//!     let first = &primitive.exemplars()[0].provenance;
+//!     println!("{}: {} exemplars, as at {:.1} s", primitive.name(), primitive.exemplars().len(), first.start_secs);
 //! }
 //! # Ok(())
 //! # }
@@ -66,7 +66,7 @@
 //!
 //! A module imports from modules below it and from none beside it:
 //! [`math`], [`error`]; [`skeleton`], [`motion`]; [`segmentation`], [`alignment`], [`embedding`], [`clustering`],
-//! [`retargeting`]; [`primitive`]; [`derivation`], [`choreography`].
+//! [`interpolation`], [`retargeting`]; [`primitive`]; [`derivation`], [`choreography`].
 
 pub mod alignment;
 pub mod choreography;
@@ -74,6 +74,7 @@ pub mod clustering;
 pub mod derivation;
 pub mod embedding;
 pub mod error;
+pub mod interpolation;
 pub mod math;
 pub mod motion;
 pub mod primitive;
@@ -83,5 +84,7 @@ pub mod skeleton;
 
 pub use error::{Error, Result};
 pub use motion::{Format, Motion, Observed, Placement, RecordedJoint, Recording, Source, Track};
-pub use primitive::{Behavior, Exemplar, Primitive, Provenance, Transitions, Vocabulary};
+pub use primitive::{
+    Behavior, Course, Exemplar, Modelling, Primitive, Provenance, Transitions, Vocabulary,
+};
 pub use skeleton::{Role, Root, Skeleton, adonis, ares, body};

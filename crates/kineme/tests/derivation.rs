@@ -9,7 +9,7 @@ use kineme::derivation::{
 };
 use kineme::math::statistics::{agreement, noise_as_singletons};
 use kineme::segmentation::Segmenter;
-use kineme::{Error, Motion, Role, Root, Skeleton, Transitions};
+use kineme::{Error, Modelling, Motion, Role, Root, Skeleton, Transitions};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
@@ -324,16 +324,19 @@ fn a_vocabulary_holds_the_most_central_segments_as_they_were() {
     }
     let derived = run(&Derivation::new(Cut::Clips), &motions);
     let vocabulary = derived
-        .vocabulary(&motions, &|m| Some(format!("hash-{m}")))
+        .vocabulary(&motions, &Modelling::default(), &|m| {
+            Some(format!("hash-{m}"))
+        })
         .expect("a vocabulary");
     assert_eq!(vocabulary.primitives().len(), derived.groups.len());
     for (primitive, group) in vocabulary.primitives().iter().zip(&derived.groups) {
-        assert_eq!(primitive.members, group.segments.len());
+        let known = primitive.group().expect("derived");
+        assert_eq!(known.members, group.segments.len());
         assert_eq!(
-            primitive.exemplars.len(),
+            primitive.exemplars().len(),
             group.segments.len().min(MAX_EXEMPLARS)
         );
-        for (exemplar, &s) in primitive.exemplars.iter().zip(&group.segments) {
+        for (exemplar, &s) in primitive.exemplars().iter().zip(&group.segments) {
             let segment = &derived.segments[s];
             let whole = motions[segment.motion]
                 .slice(segment.frames.clone())

@@ -1,35 +1,9 @@
-//! What segments are compared by: joint positions against the pelvis, heading removed, and how the body travels.
-//!
-//! On real people positions beat joint angles and rotation vectors in every comparison that was made.
+//! What segments are compared by: landmarks (joint positions against the pelvis, heading removed) and how the body travels.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::motion::Motion;
-use crate::skeleton::{Role, Skeleton};
-
-/// The joints whose positions are compared: trunk, head, and each limb from its root to its tip.
-const POINTS: [Role; 20] = [
-    Role::Chest,
-    Role::Head,
-    Role::LeftUpperArm,
-    Role::LeftLowerArm,
-    Role::LeftHand,
-    Role::LeftFingers,
-    Role::RightUpperArm,
-    Role::RightLowerArm,
-    Role::RightHand,
-    Role::RightFingers,
-    Role::LeftUpperLeg,
-    Role::LeftLowerLeg,
-    Role::LeftFoot,
-    Role::LeftToes,
-    Role::RightUpperLeg,
-    Role::RightLowerLeg,
-    Role::RightFoot,
-    Role::RightToes,
-    Role::Neck,
-    Role::Spine,
-];
+use crate::motion::{Motion, landmark_dims};
+use crate::skeleton::Skeleton;
 
 /// How motions become feature sequences.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,35 +32,24 @@ impl Default for Features {
 /// Seconds on either side over which the root's velocity is taken.
 const VELOCITY_SPAN_SECS: f64 = 0.1;
 
-/// The joints of a body that are compared.
-fn points(body: &Skeleton) -> Vec<usize> {
-    POINTS
-        .iter()
-        .filter_map(|&r| body.joints_of(r).last().copied())
-        .collect()
-}
-
 /// Numbers a frame of [`Features::of`].
 pub fn dims(body: &Skeleton) -> usize {
-    3 * points(body).len() + 4
+    landmark_dims(body) + 4
 }
 
 impl Features {
     /// The features of every frame of a motion, frame-major, [`dims`] a frame, metres.
     pub fn of(&self, motion: &Motion) -> Vec<f64> {
         let body = motion.skeleton();
-        let points = points(body);
+        let landmarks = motion.landmarks();
+        let dims = landmark_dims(body);
         let last = motion.frames() - 1;
         let span = ((VELOCITY_SPAN_SECS * motion.rate_hz()).round() as usize).max(1);
-        let mut features = Vec::with_capacity(motion.frames() * dims(body));
+        let mut features = Vec::with_capacity(motion.frames() * (dims + 4));
         for f in 0..motion.frames() {
             let root = motion.root(f);
             let upright = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -root.yaw);
-            let frames = motion.frames_at(f);
-            for &j in &points {
-                let p = upright * (frames[j].position - root.position);
-                features.extend_from_slice(p.as_slice());
-            }
+            features.extend_from_slice(&landmarks[f * dims..(f + 1) * dims]);
             let (a, b) = (f.saturating_sub(span), (f + span).min(last));
             let secs = (b - a).max(1) as f64 / motion.rate_hz();
             let (ra, rb) = (motion.root(a), motion.root(b));

@@ -37,6 +37,25 @@ pub fn log_near(q: &UnitQuaternion<f64>, previous: &Vector3<f64>) -> Vector3<f64
     }
 }
 
+/// The right Jacobian of SO(3) at a rotation vector: `exp(v + d) = exp(v) exp(right_jacobian(v) d)` to first order in d
+/// (Chirikjian 2012, section 10.6).
+pub fn right_jacobian(v: &Vector3<f64>) -> Matrix3<f64> {
+    let square = v.norm_squared();
+    // (1 - cos a) / a^2 and (a - sin a) / a^3; their series where the differences would cancel.
+    let (first, second) = if square < 1e-2 {
+        (
+            0.5 - square / 24.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0)),
+            (1.0 - square / 20.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0))) / 6.0,
+        )
+    } else {
+        let angle = square.sqrt();
+        let (sine, cosine) = angle.sin_cos();
+        ((1.0 - cosine) / square, (angle - sine) / (square * angle))
+    };
+    let cross = v.cross_matrix();
+    Matrix3::identity() - cross * first + cross * cross * second
+}
+
 /// A coordinate axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Axis {

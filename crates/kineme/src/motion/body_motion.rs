@@ -186,6 +186,36 @@ impl Motion {
         )
     }
 
+    /// The mirror image of the motion about the sagittal plane: left and right swapped, the root's y and its heading
+    /// negated. Exact: mirrored twice it is the same, bit for bit.
+    ///
+    /// # Errors
+    /// When the halves of the body are not each other's image.
+    pub fn mirrored(&self) -> Result<Self> {
+        let sources = self.skeleton.mirror()?;
+        let poses = (0..self.frames())
+            .flat_map(|f| {
+                let pose = self.pose(f);
+                sources.iter().map(move |&(from, sign)| sign * pose[from])
+            })
+            .collect();
+        let roots = self
+            .roots
+            .iter()
+            .map(|r| Root {
+                position: Vector3::new(r.position.x, -r.position.y, r.position.z),
+                yaw: -r.yaw,
+            })
+            .collect();
+        Self::new(
+            self.name.clone(),
+            Arc::clone(&self.skeleton),
+            self.rate_hz,
+            poses,
+            roots,
+        )
+    }
+
     /// World paths of the effectors.
     pub fn effectors(&self) -> Track {
         let names = self

@@ -3,6 +3,7 @@
 mod activity;
 mod body_motion;
 mod from_motion;
+mod landmarks;
 mod recording;
 mod resample;
 mod source;
@@ -10,5 +11,6 @@ mod track;
 
 pub use activity::{CENTROID_DIMS, STACKED_DIMS};
 pub use body_motion::Motion;
+pub use landmarks::{landmark_dims, mirror_landmarks};
 pub use recording::{Format, Observed, Placement, RecordedJoint, Recording, Source};
 pub use track::Track;

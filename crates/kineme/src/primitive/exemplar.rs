@@ -22,4 +22,17 @@ pub struct Exemplar {
     pub motion: Motion,
     /// Its source.
     pub provenance: Provenance,
+    /// Where it lies among the primitive's variations, in the adverbs' own units; `None` where nobody said.
+    pub adverbs: Option<Vec<f64>>,
+}
+
+impl Exemplar {
+    /// How messages name it: the recording and, of a part of one, its seconds.
+    pub fn label(&self) -> String {
+        let from = &self.provenance;
+        format!(
+            "`{}` from {:.2} to {:.2} s",
+            from.motion, from.start_secs, from.end_secs
+        )
+    }
 }

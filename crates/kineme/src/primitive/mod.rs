@@ -1,7 +1,26 @@
-//! Floor 3: the model: exemplars, primitives, the vocabulary.
+//! Floor 3: the model: exemplars, primitives f(p, τ), the vocabulary.
 
+mod aim;
+mod course;
+mod curve;
 mod exemplar;
+mod fitting;
+mod judge;
+mod model;
+mod modelling;
+mod registered;
+mod selection;
+mod space;
+mod structure;
 mod vocabulary;
 
+pub use aim::{Aim, Reached};
+pub use course::{Course, Sample, Travel};
 pub use exemplar::{Exemplar, Provenance};
-pub use vocabulary::{Behavior, Primitive, Transitions, Vocabulary};
+pub use fitting::SHAPE_PHASES;
+pub use model::{Group, Primitive};
+pub use modelling::{
+    Fit, Interpolation, LeaveOneOut, Mismatched, Modelling, Parameterisation, Trial, Used,
+};
+pub use space::{ParameterAxis, ParameterSource, ParameterSpace};
+pub use vocabulary::{Behavior, Transitions, Vocabulary};

@@ -3,22 +3,9 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::exemplar::Exemplar;
+use super::model::Primitive;
 use crate::error::{Error, Result};
 use crate::skeleton::Skeleton;
-
-/// A class of structurally identical yet stylistically varied movements (paper, section III), given by exemplars.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Primitive {
-    /// Its name, unique in the vocabulary.
-    pub name: String,
-    /// Its exemplars, at least one, the most central first.
-    pub exemplars: Vec<Exemplar>,
-    /// How many segments its group had; exemplars may be fewer.
-    pub members: usize,
-    /// Mean silhouette of the group in [-1, 1]; low values flag unintended groups. `None` when it is the only group.
-    pub coherence: Option<f64>,
-}
 
 /// Primitives that belong to one behaviour: the second level of the derivation.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -73,7 +60,7 @@ impl Vocabulary {
     /// A vocabulary of these primitives.
     ///
     /// # Errors
-    /// When names repeat or are empty, a primitive has no exemplar or one of another body, a behaviour names no
+    /// When names repeat, a primitive is of another body, a behaviour names no
     /// primitive of the vocabulary, or the transitions are of another number of primitives.
     pub fn new(
         body: Arc<Skeleton>,
@@ -83,24 +70,17 @@ impl Vocabulary {
     ) -> Result<Self> {
         let mut names = BTreeSet::new();
         for p in &primitives {
-            if p.name.is_empty() || !names.insert(p.name.as_str()) {
+            if !names.insert(p.name()) {
                 return Err(Error::invalid(format!(
-                    "primitives need distinct names, found `{}` twice or empty",
-                    p.name
+                    "primitives need distinct names, found `{}` twice",
+                    p.name()
                 )));
             }
-            if p.exemplars.is_empty() {
+            if **p.body() != *body {
                 return Err(Error::invalid(format!(
-                    "primitive `{}` has no exemplar",
-                    p.name
-                )));
-            }
-            let foreign = |e: &&Exemplar| **e.motion.skeleton() != *body;
-            if let Some(e) = p.exemplars.iter().find(foreign) {
-                return Err(Error::invalid(format!(
-                    "an exemplar of `{}` is of the body `{}`, not of `{}`",
-                    p.name,
-                    e.motion.skeleton().name(),
+                    "the primitive `{}` is of the body `{}`, not of `{}`",
+                    p.name(),
+                    p.body().name(),
                     body.name()
                 )));
             }
@@ -146,12 +126,12 @@ impl Vocabulary {
     pub fn primitive(&self, name: &str) -> Result<&Primitive> {
         self.primitives
             .iter()
-            .find(|p| p.name == name)
+            .find(|p| p.name() == name)
             .ok_or_else(|| {
                 Error::unknown_name(
                     "primitive",
                     name,
-                    self.primitives.iter().map(|p| p.name.as_str()),
+                    self.primitives.iter().map(Primitive::name),
                 )
             })
     }

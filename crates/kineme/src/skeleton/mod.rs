@@ -10,7 +10,9 @@ mod body;
 mod clinical;
 mod joint;
 mod kinematics;
+mod mirror;
 mod parts;
+mod reach;
 mod role;
 
 pub use adonis::adonis;
@@ -19,6 +21,7 @@ pub use ares::ares;
 pub use body::{Effector, Skeleton};
 pub use joint::{ClinicalAxes, Joint, JointKind, Link, Range};
 pub use kinematics::{Frame, Root};
+pub use reach::Reach;
 pub use role::Role;
 
 use crate::error::{Error, Result};

@@ -35,6 +35,32 @@ roles! {
 }
 
 impl Role {
+    /// The role on the other side of the body; the trunk's roles are their own.
+    pub fn mirrored(self) -> Self {
+        use Role::*;
+        match self {
+            Hips | Spine | Chest | UpperChest | Neck | Head => self,
+            LeftShoulder => RightShoulder,
+            LeftUpperArm => RightUpperArm,
+            LeftLowerArm => RightLowerArm,
+            LeftHand => RightHand,
+            LeftFingers => RightFingers,
+            RightShoulder => LeftShoulder,
+            RightUpperArm => LeftUpperArm,
+            RightLowerArm => LeftLowerArm,
+            RightHand => LeftHand,
+            RightFingers => LeftFingers,
+            LeftUpperLeg => RightUpperLeg,
+            LeftLowerLeg => RightLowerLeg,
+            LeftFoot => RightFoot,
+            LeftToes => RightToes,
+            RightUpperLeg => LeftUpperLeg,
+            RightLowerLeg => LeftLowerLeg,
+            RightFoot => LeftFoot,
+            RightToes => LeftToes,
+        }
+    }
+
     /// The role with this name.
     ///
     /// # Errors

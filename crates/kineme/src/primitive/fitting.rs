@@ -1,0 +1,386 @@
+//! From exemplars to a [`Fit`]: trim, register, parametrise, choose the interpolator.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::exemplar::Exemplar;
+use super::judge::leave_one_out;
+use super::modelling::{Fit, Mismatched, Modelling, Parameterisation, Used};
+use super::registered::curves;
+use super::selection::{Points, leading, select, unit};
+use super::space::{ParameterAxis, ParameterSource, ParameterSpace};
+use super::structure::{cycles, mismatched};
+use crate::alignment::{Registered, Registration, Warp, resample, resting_ends};
+use crate::error::{Error, Result};
+use crate::math::statistics::median;
+use crate::motion::landmark_dims;
+
+/// Phases at which the shape of an exemplar is taken for principal coordinates and for choosing an interpolator.
+pub const SHAPE_PHASES: usize = 16;
+/// Knots of a curve a second of movement: twice the rate that 6 Hz, the most of gross movement, asks for, and more.
+const KNOTS_PER_SEC: f64 = 40.0;
+/// Bounds of the number of knots.
+const KNOTS: [usize; 2] = [64, 256];
+/// An effector's coordinate that varies less, metres, is no parameter.
+const LEAST_SPREAD: f64 = 0.02;
+
+/// Fits a primitive named `name` in messages; the exemplars that it keeps, and what was fitted to them.
+pub(super) fn fit(
+    name: &str,
+    mut exemplars: Vec<Exemplar>,
+    modelling: &Modelling,
+) -> Result<(Vec<Exemplar>, Fit)> {
+    check(name, &exemplars)?;
+    let mut notes = Vec::new();
+    let phased = loop {
+        let phased = phased(name, &exemplars, modelling)?;
+        let foreign = mismatched(
+            &exemplars,
+            &phased.sequences,
+            &phased.registered,
+            phased.cyclic,
+        );
+        if foreign.is_empty() {
+            break phased;
+        }
+        let told = |(i, what): &(usize, String)| format!("{} {what}", exemplars[*i].label());
+        let told: Vec<String> = foreign.iter().map(told).collect();
+        if modelling.mismatched == Mismatched::Refuse {
+            return Err(Error::invalid(format!(
+                "exemplars of `{name}` are not of one structure: {}; give such a movement a name of its own",
+                told.join("; ")
+            )));
+        }
+        notes.extend(told.into_iter().map(|t| format!("left out: {t}")));
+        let mut index = 0;
+        exemplars.retain(|_| {
+            index += 1;
+            foreign.iter().all(|(i, _)| *i != index - 1)
+        });
+    };
+    let fit = modelled(&exemplars, phased, modelling, notes)?;
+    Ok((exemplars, fit))
+}
+
+/// Exemplars on the way to phase.
+struct Phased {
+    cyclic: bool,
+    used: Vec<Used>,
+    /// Landmarks of the part that is used.
+    sequences: Vec<Vec<f64>>,
+    registered: Registered,
+    notes: Vec<String>,
+}
+
+/// Trims and registers.
+fn phased(name: &str, exemplars: &[Exemplar], modelling: &Modelling) -> Result<Phased> {
+    let dims = landmark_dims(exemplars[0].motion.skeleton());
+    let mut notes = Vec::new();
+    let landmarks: Vec<Vec<f64>> = exemplars.iter().map(|e| e.motion.landmarks()).collect();
+    let trimmed: Vec<Used> = exemplars
+        .iter()
+        .zip(&landmarks)
+        .map(|(e, seen)| {
+            let range = resting_ends(seen, dims, e.motion.rate_hz(), &modelling.trim);
+            Used {
+                start: range.start as f64,
+                end: (range.end - 1) as f64,
+            }
+        })
+        .collect();
+    let (cyclic, used) = cycles(name, exemplars, &landmarks, trimmed, modelling, &mut notes)?;
+    let sequences: Vec<Vec<f64>> = landmarks
+        .iter()
+        .zip(&used)
+        .map(|(seen, part)| part_of(seen, dims, part))
+        .collect();
+    let borrowed: Vec<&[f64]> = sequences.iter().map(Vec::as_slice).collect();
+    let registration = Registration {
+        cyclic,
+        ..modelling.registration.clone()
+    };
+    let registered = registration.register(&borrowed, dims)?;
+    Ok(Phased {
+        cyclic,
+        used,
+        sequences,
+        registered,
+        notes,
+    })
+}
+
+/// Parametrises and chooses the interpolator.
+fn modelled(
+    exemplars: &[Exemplar],
+    phased: Phased,
+    modelling: &Modelling,
+    mut notes: Vec<String>,
+) -> Result<Fit> {
+    let body = exemplars[0].motion.skeleton();
+    let dims = landmark_dims(body);
+    let Phased {
+        cyclic,
+        used,
+        sequences,
+        registered,
+        notes: told,
+    } = phased;
+    notes.extend(told);
+    let seconds: Vec<f64> = exemplars
+        .iter()
+        .zip(&used)
+        .map(|(e, part)| (part.end - part.start) / e.motion.rate_hz())
+        .collect();
+    let knots = (KNOTS_PER_SEC * median(&seconds).unwrap_or(0.0)).ceil() as usize + 1;
+    let knots = knots.clamp(KNOTS[0], KNOTS[1]);
+    let shapes: Vec<Vec<f64>> = sequences
+        .iter()
+        .zip(&registered.warps)
+        .map(|(s, warp)| shape(s, dims, warp))
+        .collect();
+    let n = exemplars.len();
+    let gram = DMatrix::from_fn(n, n, |i, j| dot(&shapes[i], &shapes[j]));
+    let per_landmark = (SHAPE_PHASES * dims / 3) as f64;
+
+    let mut fit = Fit {
+        cyclic,
+        used,
+        warps: registered.warps,
+        reference: registered.mean,
+        knots,
+        space: ParameterSpace::new(Vec::new(), ParameterSource::Adverbs)?,
+        points: Vec::new(),
+        method: crate::interpolation::Method::Shepard { power: 2.0 },
+        trials: Vec::new(),
+        error: None,
+        notes: Vec::new(),
+    };
+    let curves = curves(exemplars, &fit);
+    let given = match &modelling.parameterisation {
+        Parameterisation::Automatic => adverbs(exemplars, modelling, &mut notes)?,
+        Parameterisation::Principal => None,
+        Parameterisation::Effector(effector) => {
+            let places = super::aim::extreme_places(body, effector, &curves, cyclic)?;
+            Some(effector_space(effector, &places, &mut notes)?)
+        }
+    };
+    let wanted = modelling.interpolation;
+    let selection = match &given {
+        Some((space, points)) => {
+            fit.space = space.clone();
+            let points = Points::Given(points, space.dims());
+            select(&gram, per_landmark, &points, wanted)?
+        }
+        None => {
+            let selection = select(&gram, per_landmark, &Points::Principal, wanted)?;
+            fit.space = principal_space(&shapes, &gram, selection.dims)?;
+            selection
+        }
+    };
+    // Exemplars that do not differ span fewer directions than were asked for.
+    let kept = fit.space.dims();
+    let rows = selection.points.chunks(selection.dims.max(1));
+    fit.points = rows.flat_map(|row| &row[..kept]).copied().collect();
+    fit.method = selection.method;
+    fit.trials = selection.trials;
+    fit.error = selection
+        .baselines
+        .map(|baselines| leave_one_out(body, &curves, &selection.weights, baselines));
+    fit.notes = notes;
+    Ok(fit)
+}
+
+fn check(name: &str, exemplars: &[Exemplar]) -> Result<()> {
+    let Some(first) = exemplars.first() else {
+        return Err(Error::invalid(format!(
+            "primitive `{name}` has no exemplar"
+        )));
+    };
+    for e in exemplars {
+        if **e.motion.skeleton() != **first.motion.skeleton() {
+            return Err(Error::invalid(format!(
+                "exemplars of `{name}` are of the bodies `{}` and `{}`",
+                first.motion.skeleton().name(),
+                e.motion.skeleton().name()
+            )));
+        }
+        if e.motion.frames() < 2 {
+            return Err(Error::invalid(format!(
+                "{}, an exemplar of `{name}`, is a single frame: a movement has at least two",
+                e.label()
+            )));
+        }
+        let count = |e: &Exemplar| e.adverbs.as_ref().map(Vec::len);
+        if count(e) != count(first) {
+            return Err(Error::invalid(format!(
+                "{}, an exemplar of `{name}`, has {} adverbs, {} has {}",
+                e.label(),
+                count(e).unwrap_or(0),
+                first.label(),
+                count(first).unwrap_or(0)
+            )));
+        }
+        if let Some(v) = e.adverbs.iter().flatten().find(|v| !v.is_finite()) {
+            return Err(Error::invalid(format!(
+                "{}, an exemplar of `{name}`, has the adverb {v}; adverbs are finite",
+                e.label()
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Frames of a sequence between two that need not be whole; as many as there are at least.
+pub(super) fn part_of(sequence: &[f64], dims: usize, part: &Used) -> Vec<f64> {
+    let last = (sequence.len() / dims - 1) as f64;
+    let count = (part.end - part.start).ceil().max(1.0);
+    let place = |i: usize| (part.start + (part.end - part.start) * i as f64 / count) / last;
+    let places: Vec<f64> = (0..=count as usize).map(place).collect();
+    resample(sequence, dims, &places)
+}
+
+/// Landmarks of an exemplar at evenly spaced phases, joined.
+pub(super) fn shape(sequence: &[f64], dims: usize, warp: &Warp) -> Vec<f64> {
+    let phase = |k: usize| k as f64 / (SHAPE_PHASES - 1) as f64;
+    let places: Vec<f64> = (0..SHAPE_PHASES).map(|k| warp.place(phase(k))).collect();
+    resample(sequence, dims, &places)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// The space of the exemplars' adverbs; `None` where they have none. An adverb that all exemplars share is dropped.
+fn adverbs(
+    exemplars: &[Exemplar],
+    modelling: &Modelling,
+    notes: &mut Vec<String>,
+) -> Result<Option<(ParameterSpace, Vec<f64>)>> {
+    let n = exemplars.len();
+    let Some(count) = exemplars[0].adverbs.as_ref().map(Vec::len) else {
+        return Ok(None);
+    };
+    let values: Vec<f64> = exemplars
+        .iter()
+        .flat_map(|e| e.adverbs.iter().flatten().copied())
+        .collect();
+    let name = |d: usize| match modelling.adverbs.get(d) {
+        Some(name) => name.clone(),
+        None => format!("p{}", d + 1),
+    };
+    let found = spaced(&values, count, n, name, 0.0, notes);
+    let space = ParameterSpace::new(found.axes, ParameterSource::Adverbs)?;
+    Ok(Some((space, found.points)))
+}
+
+/// Columns of values as parameters.
+struct Spaced {
+    axes: Vec<ParameterAxis>,
+    /// In [0, 1], row-major.
+    points: Vec<f64>,
+    /// The columns that vary.
+    kept: Vec<usize>,
+}
+
+/// Axes and unit points of columns that vary by more than `least`; the others are dropped and noted.
+fn spaced(
+    values: &[f64],
+    count: usize,
+    n: usize,
+    name: impl Fn(usize) -> String,
+    least: f64,
+    notes: &mut Vec<String>,
+) -> Spaced {
+    let (_, ranges) = unit(values, count, count, n);
+    let (kept, dropped): (Vec<usize>, Vec<usize>) =
+        (0..count).partition(|&d| ranges[d][1] - ranges[d][0] > least);
+    for d in dropped {
+        notes.push(format!(
+            "`{}` is {:.4} in all exemplars: no parameter",
+            name(d),
+            ranges[d][0]
+        ));
+    }
+    let axes = kept.iter().map(|&d| ParameterAxis {
+        name: name(d),
+        low: ranges[d][0],
+        high: ranges[d][1],
+    });
+    let columns: Vec<f64> = (0..n)
+        .flat_map(|i| kept.iter().map(move |&d| values[i * count + d]))
+        .collect();
+    let (points, _) = unit(&columns, kept.len(), kept.len(), n);
+    Spaced {
+        axes: axes.collect(),
+        points,
+        kept,
+    }
+}
+
+/// The space of an effector's places, `x, y, z` an exemplar.
+fn effector_space(
+    effector: &str,
+    places: &[[f64; 3]],
+    notes: &mut Vec<String>,
+) -> Result<(ParameterSpace, Vec<f64>)> {
+    const COORDINATES: [&str; 3] = ["forward", "left", "up"];
+    let values: Vec<f64> = places.iter().flatten().copied().collect();
+    let name = |d: usize| format!("{effector}-{}", COORDINATES[d]);
+    let found = spaced(&values, 3, places.len(), name, LEAST_SPREAD, notes);
+    let source = ParameterSource::Effector {
+        effector: effector.into(),
+        coordinates: found.kept,
+    };
+    Ok((ParameterSpace::new(found.axes, source)?, found.points))
+}
+
+/// The space of the first principal coordinates: metres, root mean square over landmarks and phases.
+fn principal_space(
+    shapes: &[Vec<f64>],
+    gram: &DMatrix<f64>,
+    dims: usize,
+) -> Result<ParameterSpace> {
+    let n = shapes.len();
+    let length = shapes[0].len();
+    let mut mean = vec![0.0; length];
+    for s in shapes {
+        for (m, v) in mean.iter_mut().zip(s) {
+            *m += v / n as f64;
+        }
+    }
+    let rows: Vec<f64> = (0..n).map(|a| gram.row(a).sum() / n as f64).collect();
+    let all = rows.iter().sum::<f64>() / n as f64;
+    let centred = DMatrix::from_fn(n, n, |a, b| gram[(a, b)] - rows[a] - rows[b] + all);
+    let mut directions = Vec::with_capacity(dims * length);
+    let mut axes = Vec::with_capacity(dims);
+    for (d, (_, vector)) in leading(centred, dims).into_iter().enumerate() {
+        let mut direction = DVector::zeros(length);
+        for (a, s) in shapes.iter().enumerate() {
+            for (x, (v, m)) in direction.iter_mut().zip(s.iter().zip(&mean)) {
+                *x += vector[a] * (v - m);
+            }
+        }
+        if direction.normalize_mut() <= f64::EPSILON {
+            break;
+        }
+        let along = |s: &Vec<f64>| -> f64 {
+            let offset = s.iter().zip(&mean).map(|(v, m)| v - m);
+            offset.zip(direction.iter()).map(|(o, x)| o * x).sum()
+        };
+        let (low, high) = shapes
+            .iter()
+            .map(along)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+                (low.min(v), high.max(v))
+            });
+        if high <= low {
+            break;
+        }
+        axes.push(ParameterAxis {
+            name: format!("shape-{}", d + 1),
+            low,
+            high,
+        });
+        directions.extend(direction.iter());
+    }
+    ParameterSpace::new(axes, ParameterSource::Principal { mean, directions })
+}

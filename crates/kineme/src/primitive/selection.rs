@@ -1,0 +1,352 @@
+//! Which interpolator, and of how many parameters: each exemplar predicted from the others, by their inner products alone.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use super::modelling::{Interpolation, Trial};
+use crate::error::Result;
+use crate::interpolation::{Interpolator, Kernel, Method, Tail, wendland_support};
+
+/// Parameters that data may choose at most: Wendland's function is positive definite up to three dimensions.
+const MOST_PRINCIPAL: usize = 3;
+/// A smoother interpolator must be better by this factor before the exact one is left.
+const BETTER: f64 = 0.98;
+/// Nuggets that are tried: relative to the kernel's value 1 at distance 0.
+const NUGGETS: [f64; 3] = [0.03, 0.3, 3.0];
+
+/// Where the exemplars' parameters come from.
+pub(super) enum Points<'a> {
+    /// Given, row-major, so many each.
+    Given(&'a [f64], usize),
+    /// Principal coordinates.
+    Principal,
+}
+
+/// What the selection found.
+pub(super) struct Selection {
+    /// Parameters in the unit cube, row-major.
+    pub points: Vec<f64>,
+    pub dims: usize,
+    pub method: Method,
+    /// The chosen trial first, then the best of each family.
+    pub trials: Vec<Trial>,
+    /// Landmark errors (metres) of the nearest exemplar in parameters and of the mean of the others.
+    pub baselines: Option<[f64; 2]>,
+    /// The weights of the others for each exemplar, row-major `n x n`, zero on the diagonal.
+    pub weights: Vec<f64>,
+}
+
+/// Chooses among interpolators. `gram` holds the inner products of the exemplars' registered landmarks, `per_landmark`
+/// the number of landmarks that one exemplar has over all phases.
+pub(super) fn select(
+    gram: &DMatrix<f64>,
+    per_landmark: f64,
+    points: &Points,
+    wanted: Interpolation,
+) -> Result<Selection> {
+    let n = gram.nrows();
+    let dims: Vec<usize> = match points {
+        Points::Given(_, dims) => vec![*dims],
+        // A direction needs exemplars on it: three for each after the first two.
+        Points::Principal => {
+            (1..=MOST_PRINCIPAL.min((n / 3).max(1)).min(n.saturating_sub(1))).collect()
+        }
+    };
+    let dims = if dims.is_empty() { vec![0] } else { dims };
+    let most = dims[dims.len() - 1];
+    let (all, folds) = match points {
+        Points::Given(values, dims) => (values.to_vec(), given_folds(values, *dims, n)),
+        Points::Principal => (principal(gram, None, most), principal_folds(gram, most)),
+    };
+    let mut trials: Vec<(Trial, Vec<f64>)> = Vec::new();
+    if n > 1 {
+        for &m in &dims {
+            for method in candidates(&unit(&all, most, m, n).0, n, m, wanted) {
+                let weights = fold_weights(&folds, n, most, m, &method)?;
+                let error_m = mean_error(gram, &weights, per_landmark);
+                let dims = m;
+                let trial = Trial {
+                    method,
+                    dims,
+                    error_m,
+                };
+                trials.push((trial, weights));
+            }
+        }
+    }
+    let Some(chosen) = choose(&trials) else {
+        let m = most.min(dims[0]);
+        let points = unit(&all, most, m, n).0;
+        let method = default_method(&points, n, m, wanted);
+        return Ok(Selection {
+            method,
+            points,
+            dims: m,
+            trials: Vec::new(),
+            baselines: None,
+            weights: vec![0.0; n * n],
+        });
+    };
+    let (trial, weights) = trials[chosen].clone();
+    let m = trial.dims;
+    let baselines = Some([
+        mean_error(gram, &nearest_weights(&folds, n, most, m), per_landmark),
+        mean_error(gram, &mean_weights(n), per_landmark),
+    ]);
+    let mut told = vec![trial.clone()];
+    for family in [Family::Exact, Family::Smoothed, Family::Shepard] {
+        let best = trials
+            .iter()
+            .map(|(t, _)| t)
+            .filter(|t| Family::of(&t.method) == family)
+            .min_by(|a, b| a.error_m.total_cmp(&b.error_m));
+        told.extend(best.filter(|t| **t != trial).cloned());
+    }
+    Ok(Selection {
+        points: unit(&all, most, m, n).0,
+        dims: m,
+        method: trial.method,
+        trials: told,
+        baselines,
+        weights,
+    })
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Family {
+    Exact,
+    Smoothed,
+    Shepard,
+}
+
+impl Family {
+    fn of(method: &Method) -> Self {
+        match method {
+            Method::Shepard { .. } => Family::Shepard,
+            Method::Cardinal { nugget, .. } if *nugget > 0.0 => Family::Smoothed,
+            Method::Cardinal { .. } => Family::Exact,
+        }
+    }
+}
+
+/// The first that no later one beats clearly.
+fn choose(trials: &[(Trial, Vec<f64>)]) -> Option<usize> {
+    let mut best: Option<usize> = None;
+    for (i, (trial, _)) in trials.iter().enumerate() {
+        let better = best.is_none_or(|b| trial.error_m < BETTER * trials[b].0.error_m);
+        if better {
+            best = Some(i);
+        }
+    }
+    best
+}
+
+fn verbs_and_adverbs(points: &[f64], n: usize, dims: usize, nugget: f64) -> Method {
+    let support = wendland_support(points, n, dims);
+    Method::Cardinal {
+        kernel: Kernel::Wendland { support },
+        tail: Tail::LeastSquares,
+        nugget,
+    }
+}
+
+/// Shepard's power must pass the dimension, or far exemplars together outweigh the near one.
+fn shepard(dims: usize, times: f64) -> Method {
+    Method::Shepard {
+        power: times * (dims + 1).max(2) as f64,
+    }
+}
+
+fn default_method(points: &[f64], n: usize, dims: usize, wanted: Interpolation) -> Method {
+    match wanted {
+        Interpolation::Shepard => shepard(dims, 1.0),
+        _ => verbs_and_adverbs(points, n, dims, 0.0),
+    }
+}
+
+fn candidates(points: &[f64], n: usize, dims: usize, wanted: Interpolation) -> Vec<Method> {
+    let exact = verbs_and_adverbs(points, n, dims, 0.0);
+    let inverse = [1.0, 2.0].map(|times| shepard(dims, times));
+    match wanted {
+        Interpolation::VerbsAndAdverbs => vec![exact],
+        Interpolation::Shepard => inverse.to_vec(),
+        Interpolation::Automatic => {
+            let mut all = vec![exact];
+            all.extend(NUGGETS.map(|nugget| verbs_and_adverbs(points, n, dims, nugget)));
+            all.extend(inverse);
+            all
+        }
+    }
+}
+
+/// Raw parameters without one exemplar, and its own under the transform fitted without it.
+struct Fold {
+    others: Vec<f64>,
+    own: Vec<f64>,
+}
+
+fn given_folds(values: &[f64], dims: usize, n: usize) -> Vec<Fold> {
+    let row = |i: usize| &values[i * dims..(i + 1) * dims];
+    (0..n)
+        .map(|i| Fold {
+            others: (0..n).filter(|&k| k != i).flat_map(row).copied().collect(),
+            own: row(i).to_vec(),
+        })
+        .collect()
+}
+
+fn principal_folds(gram: &DMatrix<f64>, dims: usize) -> Vec<Fold> {
+    let n = gram.nrows();
+    if n < 2 {
+        return Vec::new();
+    }
+    (0..n)
+        .map(|i| {
+            let mut scores = principal(gram, Some(i), dims);
+            let own = scores.split_off((n - 1) * dims);
+            Fold {
+                others: scores,
+                own,
+            }
+        })
+        .collect()
+}
+
+/// Principal coordinates of all exemplars but `without`, row-major, and behind them those of `without` itself,
+/// from inner products alone (kernel PCA with a linear kernel).
+fn principal(gram: &DMatrix<f64>, without: Option<usize>, dims: usize) -> Vec<f64> {
+    let kept: Vec<usize> = (0..gram.nrows()).filter(|i| Some(*i) != without).collect();
+    let n = kept.len();
+    let inner = DMatrix::from_fn(n, n, |a, b| gram[(kept[a], kept[b])]);
+    let rows: Vec<f64> = (0..n).map(|a| inner.row(a).sum() / n as f64).collect();
+    let all = rows.iter().sum::<f64>() / n as f64;
+    let centred = DMatrix::from_fn(n, n, |a, b| inner[(a, b)] - rows[a] - rows[b] + all);
+    let directions = leading(centred, dims);
+    let mut scores = vec![0.0; (n + usize::from(without.is_some())) * dims];
+    for (d, (value, vector)) in directions.iter().enumerate() {
+        let length = value.max(0.0).sqrt();
+        for a in 0..n {
+            scores[a * dims + d] = vector[a] * length;
+        }
+        if let Some(i) = without {
+            let cross: Vec<f64> = kept.iter().map(|&k| gram[(i, k)]).collect();
+            let mean = cross.iter().sum::<f64>() / n as f64;
+            let along: f64 = (0..n)
+                .map(|a| vector[a] * (cross[a] - mean - rows[a] + all))
+                .sum();
+            scores[n * dims + d] = if length > 0.0 { along / length } else { 0.0 };
+        }
+    }
+    scores
+}
+
+/// Eigenvectors of the largest eigenvalues, each with its largest entry positive.
+pub(super) fn leading(matrix: DMatrix<f64>, count: usize) -> Vec<(f64, DVector<f64>)> {
+    let eigen = SymmetricEigen::new(matrix);
+    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
+    order.sort_by(|&a, &b| {
+        eigen.eigenvalues[b]
+            .total_cmp(&eigen.eigenvalues[a])
+            .then(a.cmp(&b))
+    });
+    let vector = |i: usize| {
+        let v = eigen.eigenvectors.column(i).into_owned();
+        let sign = if v[v.iamax()] < 0.0 { -1.0 } else { 1.0 };
+        (eigen.eigenvalues[i], v * sign)
+    };
+    order.into_iter().take(count).map(vector).collect()
+}
+
+/// The first `m` of `most` coordinates of `n` points brought into [0, 1], with their ranges; a coordinate that does not
+/// vary becomes 0.
+pub(super) fn unit(points: &[f64], most: usize, m: usize, n: usize) -> (Vec<f64>, Vec<[f64; 2]>) {
+    let ranges: Vec<[f64; 2]> = (0..m)
+        .map(|d| {
+            let column = (0..n).map(|i| points[i * most + d]);
+            column.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+                [low.min(v), high.max(v)]
+            })
+        })
+        .collect();
+    let places = (0..n).flat_map(|i| (0..m).map(move |d| (i, d)));
+    let places = places.map(|(i, d)| place(points[i * most + d], ranges[d]));
+    (places.collect(), ranges)
+}
+
+fn place(value: f64, [low, high]: [f64; 2]) -> f64 {
+    if high > low {
+        (value - low) / (high - low)
+    } else {
+        0.0
+    }
+}
+
+/// Weights of the others for every exemplar, parameters and interpolator made without it.
+fn fold_weights(
+    folds: &[Fold],
+    n: usize,
+    most: usize,
+    m: usize,
+    method: &Method,
+) -> Result<Vec<f64>> {
+    let mut weights = vec![0.0; n * n];
+    let mut own = vec![0.0; n - 1];
+    for (i, fold) in folds.iter().enumerate() {
+        let (points, ranges) = unit(&fold.others, most, m, n - 1);
+        let interpolator = Interpolator::new(&points, n - 1, m, method)?;
+        let asked: Vec<f64> = (0..m).map(|d| place(fold.own[d], ranges[d])).collect();
+        interpolator.weights(&interpolator.clamped(&asked), &mut own);
+        spread(&own, i, n, &mut weights);
+    }
+    Ok(weights)
+}
+
+/// Writes the weights of the others into row `i`.
+fn spread(own: &[f64], i: usize, n: usize, weights: &mut [f64]) {
+    for (k, w) in own.iter().enumerate() {
+        weights[i * n + k + usize::from(k >= i)] = *w;
+    }
+}
+
+fn nearest_weights(folds: &[Fold], n: usize, most: usize, m: usize) -> Vec<f64> {
+    let mut weights = vec![0.0; n * n];
+    for (i, fold) in folds.iter().enumerate() {
+        let (points, ranges) = unit(&fold.others, most, m, n - 1);
+        let asked: Vec<f64> = (0..m).map(|d| place(fold.own[d], ranges[d])).collect();
+        let distance = |k: usize| -> f64 {
+            let other = &points[k * m..(k + 1) * m];
+            other
+                .iter()
+                .zip(&asked)
+                .map(|(a, b)| (a - b) * (a - b))
+                .sum()
+        };
+        let nearest = (0..n - 1).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+        let mut own = vec![0.0; n - 1];
+        if let Some(k) = nearest {
+            own[k] = 1.0;
+        }
+        spread(&own, i, n, &mut weights);
+    }
+    weights
+}
+
+fn mean_weights(n: usize) -> Vec<f64> {
+    let share = 1.0 / (n - 1) as f64;
+    let weight = |c: usize| if c / n == c % n { 0.0 } else { share };
+    (0..n * n).map(weight).collect()
+}
+
+/// The mean over exemplars of the root mean square landmark error that these weights make.
+fn mean_error(gram: &DMatrix<f64>, weights: &[f64], per_landmark: f64) -> f64 {
+    let n = gram.nrows();
+    let error = |i: usize| {
+        let w = &weights[i * n..(i + 1) * n];
+        let mut square = gram[(i, i)];
+        for k in 0..n {
+            square -= 2.0 * w[k] * gram[(i, k)];
+            square += w[k] * (0..n).map(|l| w[l] * gram[(k, l)]).sum::<f64>();
+        }
+        (square.max(0.0) / per_landmark).sqrt()
+    };
+    (0..n).map(error).sum::<f64>() / n as f64
+}
