@@ -31,7 +31,12 @@ pub fn write(vocabulary: &Vocabulary, name: &str) -> Result<Vec<u8>> {
             "a body known by its name",
         ));
     }
-    let wraps = |p: &Primitive| p.fitted().warps.iter().all(|w| w.is_closed() == p.is_cyclic());
+    let wraps = |p: &Primitive| {
+        p.fitted()
+            .warps
+            .iter()
+            .all(|w| w.is_closed() == p.is_cyclic())
+    };
     if let Some(p) = vocabulary.primitives().iter().find(|p| !wraps(p)) {
         let found = format!("open and closed warps in the primitive `{}`", p.name());
         let expected = "closed warps where phase wraps, and only there";
@@ -85,10 +90,15 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vocabulary> {
     });
     let mut movements = file.exemplars.into_iter();
     let fits = file.fits.into_iter();
-    let primitives = file.meta.primitives.into_iter().zip(fits).map(|(meta, fit)| {
-        let movements = movements.by_ref().take(meta.exemplars.len()).collect();
-        primitive(meta, fit, movements, &skeleton)
-    });
+    let primitives = file
+        .meta
+        .primitives
+        .into_iter()
+        .zip(fits)
+        .map(|(meta, fit)| {
+            let movements = movements.by_ref().take(meta.exemplars.len()).collect();
+            primitive(meta, fit, movements, &skeleton)
+        });
     let primitives = primitives.collect::<kineme::Result<_>>().map_err(refused)?;
     Vocabulary::new(
         Arc::clone(&skeleton),
@@ -157,7 +167,10 @@ fn file_of(vocabulary: &Vocabulary) -> VocabularyFile {
     let pairs = (0..transitions.n).flat_map(|from| (0..transitions.n).map(move |to| (from, to)));
     VocabularyFile {
         exemplars: primitives.iter().flat_map(exemplar_tensors).collect(),
-        fits: primitives.iter().map(|p| FitTensors::of(p.fitted())).collect(),
+        fits: primitives
+            .iter()
+            .map(|p| FitTensors::of(p.fitted()))
+            .collect(),
         meta: VocabularyMeta {
             program: concat!("kineme ", env!("CARGO_PKG_VERSION")).into(),
             body: vocabulary.body().name().into(),

@@ -103,7 +103,10 @@ impl FitTensors {
         })?;
         finite(|| of("parameters"), &self.points)?;
         finite(|| of("reference"), &self.reference)?;
-        let transform = (primitive.fit.source == SourceMeta::Principal, &self.principal);
+        let transform = (
+            primitive.fit.source == SourceMeta::Principal,
+            &self.principal,
+        );
         match transform {
             (false, None) => Ok(()),
             (true, Some(principal)) => {
@@ -115,10 +118,17 @@ impl FitTensors {
                         (found, format!("{dims} directions of {}", mean.len()))
                     },
                 )?;
-                finite(|| of("principal coordinates"), mean.iter().chain(directions))
+                finite(
+                    || of("principal coordinates"),
+                    mean.iter().chain(directions),
+                )
             }
             (wanted, _) => Err((
-                of(if wanted { "no transform" } else { "a transform" }),
+                of(if wanted {
+                    "no transform"
+                } else {
+                    "a transform"
+                }),
                 "one where parameters are principal coordinates, else none".to_string(),
             )),
         }
@@ -243,7 +253,17 @@ impl ExemplarMeta {
                 "64 lower-case hexadecimal digits".to_string(),
             )
         })?;
-        let numbers = self.adverbs.iter().flatten().chain(&self.used);
-        finite(|| at("adverbs or part used".to_string()), numbers)
+        finite(|| at("adverbs".to_string()), self.adverbs.iter().flatten())?;
+        let [first, last] = self.used;
+        // A shorter part has no duration to speak of.
+        ensure(
+            first.is_finite() && last.is_finite() && last - first >= 1.0,
+            || {
+                (
+                    at(format!("frames {first} to {last} used")),
+                    "a part at least a frame long".to_string(),
+                )
+            },
+        )
     }
 }

@@ -2,7 +2,7 @@
 
 use kineme_formats::tables::{angles, msr, positions};
 use kineme_formats::vocabulary::VocabularyFile;
-use kineme_formats::{manifest, marks, profile, script};
+use kineme_formats::{manifest, marks, profile, script, vocabulary};
 use proptest::prelude::*;
 
 /// Feeds the bytes to every reader.
@@ -23,6 +23,7 @@ fn read_by_all(bytes: &[u8]) {
         let again = VocabularyFile::parse("a", &file.write("a").unwrap()).unwrap();
         assert_eq!(again, file);
     }
+    let _ = vocabulary::read("a", bytes);
     let _ = (
         msr::sniff(bytes),
         positions::sniff(bytes),

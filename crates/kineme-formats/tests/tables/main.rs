@@ -3,6 +3,7 @@
 mod angles;
 mod body_angles;
 mod hostile;
+mod learned;
 mod manifest;
 mod msr;
 mod npz;
