@@ -197,6 +197,12 @@ fn damaged_manifests_are_refused_with_the_line() {
                 "1 parameters of `jab`",
             ),
             (
+                "parameter gained",
+                "file,label,p1,p2\na,jab,1,\nb,jab,1,2\n",
+                Line(3),
+                "2 parameters of `jab`",
+            ),
+            (
                 "parameters lost",
                 &with("0,1e-3", ","),
                 Line(3),
