@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use kineme::motion::landmark_dims;
-use kineme::primitive::Group;
+use kineme::primitive::{Group, Used};
 use kineme::{
     Behavior, Exemplar, Motion, Primitive, Provenance, Root, Skeleton, Transitions, Vocabulary,
     body,
@@ -115,7 +115,12 @@ fn primitive(
     movements: Vec<ExemplarTensors>,
     skeleton: &Arc<Skeleton>,
 ) -> kineme::Result<Primitive> {
-    let used = meta.exemplars.iter().map(|e| e.used).collect();
+    let used = meta.exemplars.iter().map(|e| Used {
+        start: e.used[0],
+        end: e.used[1],
+        shift: e.shift,
+    });
+    let used = used.collect();
     let (mut exemplars, mut warps) = (Vec::new(), Vec::new());
     for (meta, movement) in meta.exemplars.into_iter().zip(movements) {
         exemplars.push(exemplar(meta, movement.poses, &movement.root, skeleton)?);
@@ -216,6 +221,7 @@ fn primitive_meta(primitive: &Primitive) -> PrimitiveMeta {
                 blake3: e.provenance.blake3.clone(),
                 adverbs: e.adverbs.clone(),
                 used: [used.start, used.end],
+                shift: used.shift,
             })
             .collect(),
     }

@@ -264,6 +264,12 @@ impl ExemplarMeta {
                     "a part at least a frame long".to_string(),
                 )
             },
-        )
+        )?;
+        ensure((0.0..1.0).contains(&self.shift), || {
+            (
+                at(format!("shift {}", self.shift)),
+                "a share from 0 to less than 1".to_string(),
+            )
+        })
     }
 }

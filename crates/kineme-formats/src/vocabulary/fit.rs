@@ -205,7 +205,7 @@ impl FitMeta {
     pub(super) fn with(
         self,
         tensors: FitTensors,
-        used: Vec<[f64; 2]>,
+        used: Vec<Used>,
         warps: Vec<Vec<f64>>,
     ) -> kineme::Result<Fit> {
         let warp = if self.cyclic { Warp::closed } else { Warp::new };
@@ -229,10 +229,7 @@ impl FitMeta {
         };
         Ok(Fit {
             cyclic: self.cyclic,
-            used: used
-                .into_iter()
-                .map(|[start, end]| Used { start, end })
-                .collect(),
+            used,
             warps: warps.into_iter().map(warp).collect::<kineme::Result<_>>()?,
             reference: tensors.reference,
             // A number that does not fit is refused for being too many.

@@ -140,6 +140,8 @@ pub struct ExemplarMeta {
     pub adverbs: Option<Vec<f64>>,
     /// The first frame and the last that are used, not always whole.
     pub used: [f64; 2],
+    /// Where in that part phase 0 is, as a share of it, in [0, 1): 0 but for cycles read round their end.
+    pub shift: f64,
 }
 
 /// Primitives that belong together because they follow one another.

@@ -16,6 +16,7 @@ fn exemplar(motion: &str, start: f64) -> ExemplarMeta {
         blake3: Some("0af1".repeat(16)),
         adverbs: Some(vec![0.1 + 0.2, -0.0]),
         used: [0.0, 4.0 / 3.0],
+        shift: 0.25,
     }
 }
 
