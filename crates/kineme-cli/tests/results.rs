@@ -143,7 +143,7 @@ fn a_vocabulary_names_its_sources_by_their_hashes() {
     let vocabulary = kineme_formats::vocabulary::read("v.kineme", &bytes).expect("a vocabulary");
     let source = fs::read(folder.path().join("arms.bvh")).expect("a fixture");
     let hash = blake3::hash(&source).to_hex().to_string();
-    for exemplar in vocabulary.primitives().iter().flat_map(|p| &p.exemplars) {
+    for exemplar in vocabulary.primitives().iter().flat_map(|p| p.exemplars()) {
         assert_eq!(exemplar.provenance.blake3.as_ref(), Some(&hash));
         assert_eq!(exemplar.provenance.motion, "arms.bvh");
     }
