@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use kineme::{Modelling, Motion};
 use kineme::derivation::{Clustering, Cut, Derivation, Derived, Mark, SecondLevel, Stage};
 use kineme::segmentation::Segmenter;
+use kineme::{Modelling, Motion};
 use kineme_formats::input::Entry;
 use kineme_formats::{FormatError, Place, marks, output, vocabulary};
 use kineme_paper::figures::{Report, summary};
@@ -93,7 +93,8 @@ pub fn run(args: &DeriveArgs, global: &Global) -> Result<u8, Failure> {
         ))
         .hint("give more motion, a smaller --min-size, or another --segmenter or --duration"));
     }
-    let vocabulary = derived.vocabulary(&motions, &Modelling::default(), &|i| hashes.get(i).cloned())?;
+    let vocabulary =
+        derived.vocabulary(&motions, &Modelling::default(), &|i| hashes.get(i).cloned())?;
     let shown = args.out.display().to_string();
     let bytes = vocabulary::write(&vocabulary, &shown).map_err(unwritten)?;
     if let Some(folder) = &args.report {
