@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::samples::{LANES, Lane, MOST_AXES, Samples};
 use super::settings::{FlowSettings, MOST_COURSES, Metric};
 use crate::error::Result;
+use crate::interpolation::Interpolator;
 use crate::math::rotation::{exp, log_near};
 use crate::motion::Motion;
 use crate::primitive::course::{EXTRA, LOG_SECS};
@@ -26,8 +27,8 @@ const LEAST_WEIGHT: f64 = 0.01;
 /// A primitive as a field: at each posture and phase, where the movement goes from there and how far it is from there to
 /// the manifold of postures that the primitive knows.
 ///
-/// It holds the exemplars' curves, S courses as weights of exemplars, and S x B postures in at most 16 principal
-/// coordinates to find the near ones by: about 130 bytes a sample.
+/// It holds the exemplars' curves, and S x B postures in at most 16 principal coordinates to find the near ones by: about
+/// 140 bytes a sample.
 #[derive(Debug, Clone)]
 pub struct Flowfield {
     pub(super) settings: FlowSettings,
@@ -35,10 +36,11 @@ pub struct Flowfield {
     pub(super) cyclic: bool,
     /// The exemplars over phase.
     pub(super) curves: Vec<Curve>,
-    /// Weights of the exemplars in each course, courses x exemplars.
-    pub(super) shares: Vec<f64>,
+    pub(super) interpolator: Interpolator,
     /// Parameters of each course, courses x parameters.
     pub(super) points: Vec<f64>,
+    /// The middle of the exemplars' parameters.
+    pub(super) centre: Vec<f64>,
     pub(super) dims: usize,
     /// What a squared radian of each coordinate counts; their sum is one.
     pub(super) weights: Vec<f64>,
@@ -122,8 +124,9 @@ impl Flowfield {
             body,
             cyclic,
             curves,
-            shares,
+            interpolator: primitive.interpolator().clone(),
             points,
+            centre: primitive.middle(),
             dims,
             weights,
             middle,
@@ -180,6 +183,22 @@ impl Flowfield {
             *f = axis.iter().zip(velocity).map(|(a, v)| a * v).sum();
         }
         found
+    }
+
+    /// What the parameters of the courses of a block cost, seen from `parameters`.
+    pub(super) fn parameter_cost(&self, block: usize, parameters: &[f64]) -> Lane {
+        let stiff = self.stiffness();
+        std::array::from_fn(|lane| {
+            let course = (block * LANES + lane).min(self.samples.courses() - 1);
+            let point = &self.points[course * self.dims..(course + 1) * self.dims];
+            let gaps = point.iter().zip(parameters).map(|(a, b)| a - b);
+            stiff * gaps.map(|g| g * g).sum::<f64>()
+        })
+    }
+
+    /// What squared parameters count beside squared radians.
+    pub(super) fn stiffness(&self) -> f64 {
+        (self.settings.sigma_rad / self.settings.sigma_parameters).powi(2)
     }
 
     /// Pieces of phase a second of the courses of a block.

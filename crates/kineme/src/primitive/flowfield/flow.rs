@@ -1,7 +1,7 @@
 //! Following the field: where it goes from a posture, step by step and over a horizon.
 
 use super::field::Flowfield;
-use super::local::Point;
+use super::local::{Place, Point};
 use super::samples::{LANES, MOST_AXES};
 use super::settings::Memory;
 use crate::error::{Error, Result};
@@ -23,11 +23,12 @@ const LONGEST_STEP: f64 = 0.02;
 /// States that a prediction may have.
 const MOST_STATES: f64 = 1e6;
 
-/// Where a movement is: a posture and, unless the field is memoryless, the phase that goes with it.
+/// Where a movement is: a posture and, unless the field is memoryless, the phase and the parameters that go with it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlowState {
     pub(super) pose: Vec<f64>,
     pub(super) phase: f64,
+    pub(super) parameters: Vec<f64>,
     pub(super) pace: f64,
 }
 
@@ -42,9 +43,31 @@ impl FlowState {
         self.phase
     }
 
+    /// Parameters of the primitive, about [0, 1]^m: kept while the field is followed, learned from what is observed.
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
     /// How fast the movement is taken, as a multiple of the exemplars' own speed.
     pub fn pace(&self) -> f64 {
         self.pace
+    }
+
+    /// The same with other parameters.
+    ///
+    /// # Errors
+    /// When there are not as many as the primitive has, or one is not finite.
+    pub fn with_parameters(self, parameters: &[f64]) -> Result<Self> {
+        if parameters.len() != self.parameters.len() || parameters.iter().any(|p| !p.is_finite()) {
+            return Err(Error::invalid(format!(
+                "{} finite parameters, found {parameters:?}",
+                self.parameters.len()
+            )));
+        }
+        Ok(Self {
+            parameters: parameters.to_vec(),
+            ..self
+        })
     }
 
     /// The same, taken faster or more slowly: 0.1 to 10 times the exemplars' speed.
@@ -85,7 +108,7 @@ pub struct Update {
 }
 
 impl Flowfield {
-    /// The state nearest to a posture, as if at rest: of two places with the same posture the earlier one.
+    /// The state nearest to a posture: of two places with the same posture the earlier one.
     ///
     /// # Errors
     /// When the posture has not the body's coordinates, or one is not finite.
@@ -111,11 +134,17 @@ impl Flowfield {
         if !phase.is_finite() {
             return Err(Error::invalid(format!("a phase is finite, found {phase}")));
         }
-        Ok(FlowState {
-            pose: self.named(pose),
-            phase: self.on_curve(phase),
+        Ok(self.state(self.named(pose), self.on_curve(phase)))
+    }
+
+    /// A state with the parameters that its posture tells; where it tells nothing, those in the exemplars' middle.
+    fn state(&self, pose: Vec<f64>, phase: f64) -> FlowState {
+        FlowState {
+            parameters: self.near(&pose, phase, &self.centre).parameters,
+            pose,
+            phase,
             pace: 1.0,
-        })
+        }
     }
 
     fn entry(&self, pose: &[f64], velocity: Option<&[f64]>) -> Result<FlowState> {
@@ -125,21 +154,21 @@ impl Flowfield {
         let moving = velocity.map(|v| self.direction(v));
         let pieces = self.samples.pieces() as f64;
         let late = if self.cyclic { 0.0 } else { LATE_RAD / pieces };
-        let found = self
-            .samples
-            .nearest(&query, self.samples.everywhere(), 1, |block, place| {
+        let found = self.samples.nearest(
+            &query,
+            self.samples.everywhere(),
+            1,
+            |block| self.parameter_cost(block, &self.centre),
+            |block, place| {
                 let mut cost = [(late * place as f64).powi(2); LANES];
                 if let Some(v) = &moving {
                     self.add_velocity_gap(v, block, place, &mut cost);
                 }
                 cost
-            });
+            },
+        );
         let phase = self.on_curve(self.samples.phase(&found.as_slice()[0]));
-        Ok(FlowState {
-            pose,
-            phase,
-            pace: 1.0,
-        })
+        Ok(self.state(pose, phase))
     }
 
     /// Adds what the velocity of the samples at a place differs from `velocity`.
@@ -185,7 +214,7 @@ impl Flowfield {
     }
 
     fn with_phase(&self, state: &FlowState) -> Update {
-        let place = self.near(&state.pose, state.phase);
+        let place = self.near(&state.pose, state.phase, &state.parameters);
         let point = self.point(&place.shares, place.phase);
         let rate = state.pace / point.secs_per_phase;
         let gap = Gap::between(self, &state.pose, &point);
@@ -229,18 +258,24 @@ impl Flowfield {
         }
     }
 
-    /// The place on the manifold near a posture whose phase is about `phase`.
-    fn near(&self, pose: &[f64], phase: f64) -> super::local::Place {
+    /// The place on the manifold near a posture whose phase and parameters are about these.
+    fn near(&self, pose: &[f64], phase: f64, parameters: &[f64]) -> Place {
         let query = self.query(pose);
         let window = self.samples.around(phase, self.settings.window);
         let pieces = self.samples.pieces() as f64;
         let stiff = (self.settings.sigma_rad / self.settings.sigma).powi(2);
         let most = self.settings.neighbours + 1;
-        let matches = self.samples.nearest(&query, window, most, |_, at| {
-            let off = at as f64 / pieces - phase;
-            [stiff * off * off; LANES]
-        });
-        self.place(&query, &matches)
+        let matches = self.samples.nearest(
+            &query,
+            window,
+            most,
+            |block| self.parameter_cost(block, parameters),
+            |_, at| {
+                let off = at as f64 / pieces - phase;
+                [stiff * off * off; LANES]
+            },
+        );
+        self.place(&query, parameters, &matches)
     }
 
     /// Takes a state `dt_secs` further: the midpoint rule (Runge and Kutta's second order), in parts of at most 20 ms.
@@ -282,6 +317,10 @@ impl Flowfield {
         FlowState {
             pose,
             phase,
+            parameters: match self.settings.memory {
+                Memory::Phase => state.parameters.clone(),
+                Memory::None => by.parameters.clone(),
+            },
             pace: state.pace,
         }
     }
@@ -315,8 +354,8 @@ impl Flowfield {
         Ok(states)
     }
 
-    /// Blends a measured posture into a state: posture and phase go the share `gain` (0 to 1) of the way from what the
-    /// field predicted to what was measured. With 1 the lag of whatever follows the field would stall it, with 0 nothing
+    /// Blends a measured posture into a state: posture, phase and parameters go the share `gain` (0 to 1) of the way from
+    /// what the field predicted to what was measured. With 1 the lag of whatever follows the field would stall it, with 0 nothing
     /// is learned of disturbances; 0.2 serves a robot, more serves an observer.
     ///
     /// # Errors
@@ -330,8 +369,11 @@ impl Flowfield {
         }
         let measured = self.named(measured);
         if self.settings.memory == Memory::Phase {
-            let seen = self.near(&measured, state.phase).phase;
-            state.phase = self.on_curve(state.phase + gain * (seen - state.phase));
+            let seen = self.near(&measured, state.phase, &state.parameters);
+            state.phase = self.on_curve(state.phase + gain * (seen.phase - state.phase));
+            for (p, q) in state.parameters.iter_mut().zip(&seen.parameters) {
+                *p += gain * (q - *p);
+            }
         }
         for (x, m) in state.pose.iter_mut().zip(&measured) {
             *x += gain * (m - *x);

@@ -8,6 +8,8 @@ use crate::primitive::course::{EXTRA, LOG_SECS, Travel};
 
 /// Parameters at most for which the model is affine in them.
 const MOST_AFFINE: usize = 6;
+/// How far from the neighbours' mean their affine model is trusted, in squared standard deviations.
+const FARTHEST: f64 = 4.0;
 
 /// A place on the manifold: exemplars' weights and phase.
 pub(super) struct Place {
@@ -55,50 +57,55 @@ impl Flowfield {
         (shares, k)
     }
 
-    /// The place on the manifold near a posture: the kernel mean of the nearest courses, moved along the manifold to
-    /// where the posture is (weighted regression of postures on parameters, Atkeson, Moore and Schaal 1997). Without that
-    /// the mean of one-sided neighbours would draw inward at the manifold's edge.
-    pub(super) fn place(&self, query: &[f64; MOST_AXES], matches: &Matches) -> Place {
+    /// The place on the manifold near a posture whose parameters are about `about`: the kernel mean of the nearest courses,
+    /// moved along the manifold to where the posture is (weighted regression of postures on parameters, Atkeson, Moore and
+    /// Schaal 1997). Without that the mean of one-sided neighbours would draw inward at the manifold's edge.
+    pub(super) fn place(
+        &self,
+        query: &[f64; MOST_AXES],
+        about: &[f64],
+        matches: &Matches,
+    ) -> Place {
         let (mut kernel, k) = self.kernel(matches);
         if k > 1 && (1..=MOST_AFFINE).contains(&self.dims) {
-            self.regress(query, matches, &mut kernel[..k]);
+            self.regress(query, about, matches, &mut kernel[..k]);
         }
-        let n = self.curves.len();
         let mut place = Place {
-            shares: vec![0.0; n],
+            shares: vec![0.0; self.curves.len()],
             parameters: vec![0.0; self.dims],
             phase: 0.0,
         };
         for (m, &share) in matches.as_slice().iter().zip(&kernel[..k]) {
-            let row = &self.shares[m.course * n..(m.course + 1) * n];
-            for (s, w) in place.shares.iter_mut().zip(row) {
-                *s += share * w;
-            }
             let point = &self.points[m.course * self.dims..(m.course + 1) * self.dims];
             for (p, v) in place.parameters.iter_mut().zip(point) {
                 *p += share * v;
             }
             place.phase += share * self.samples.phase(m);
         }
+        self.interpolator
+            .weights(&place.parameters, &mut place.shares);
         place
     }
 
-    /// Turns kernel shares into those of the affine model at the query. The farther the query from the manifold, the less
-    /// its place along it is trusted (a ridge of the squared distance), and it never leaves its neighbours' spread.
-    fn regress(&self, query: &[f64; MOST_AXES], matches: &Matches, kernel: &mut [f64]) {
+    /// Turns kernel shares into those of the affine model at the query, which never leaves its neighbours' spread.
+    fn regress(
+        &self,
+        query: &[f64; MOST_AXES],
+        about: &[f64],
+        matches: &Matches,
+        kernel: &mut [f64],
+    ) {
         type Square = SMatrix<f64, MOST_AFFINE, MOST_AFFINE>;
         type Column = SVector<f64, MOST_AFFINE>;
         let found = matches.as_slice();
-        let point = |course: usize| {
+        let column = |values: &[f64]| {
             let mut p = Column::zeros();
-            for (d, v) in self.points[course * self.dims..][..self.dims]
-                .iter()
-                .enumerate()
-            {
+            for (d, v) in values.iter().enumerate() {
                 p[d] = *v;
             }
             p
         };
+        let point = |course: usize| column(&self.points[course * self.dims..][..self.dims]);
         let mut middle = Column::zeros();
         let mut posture = [0.0; MOST_AXES];
         let mut postures = [[0.0; MOST_AXES]; MOST_NEIGHBOURS];
@@ -119,25 +126,25 @@ impl Flowfield {
                 *c += w * (v - p) * off;
             }
         }
-        let mut normal = Square::zeros();
-        let mut right = Column::zeros();
+        // Least squares in the shift's coefficients: postures and remembered parameters, each with its weight.
+        let stiff = self.stiffness();
+        let mut normal = stiff * spread * spread;
+        let mut right = stiff * spread * (column(about) - middle);
         for ((c, q), p) in crossed.iter().zip(query).zip(&posture) {
             normal += c * c.transpose();
             right += (q - p) * c;
         }
-        let ridge = found[0].cost;
-        let mut damped = normal + ridge * spread;
-        let floor = 1e-9 * damped.trace().max(f64::MIN_POSITIVE) + f64::MIN_POSITIVE;
+        let floor = 1e-9 * normal.trace() + f64::MIN_POSITIVE;
         for d in 0..MOST_AFFINE {
-            damped[(d, d)] += if d < self.dims { floor } else { 1.0 };
+            normal[(d, d)] += if d < self.dims { floor } else { 1.0 };
         }
-        let Some(factor) = damped.cholesky() else {
+        let Some(factor) = normal.cholesky() else {
             return;
         };
         let mut along = factor.solve(&right);
         let far = (along.transpose() * spread * along)[(0, 0)];
-        if far > 1.0 {
-            along /= far.sqrt();
+        if far > FARTHEST {
+            along *= (FARTHEST / far).sqrt();
         }
         for (m, w) in found.iter().zip(kernel) {
             *w *= 1.0 + (point(m.course) - middle).dot(&along);

@@ -25,16 +25,17 @@ impl Flowfield {
         let mut parameters = vec![0.0; self.dims];
         let mut weights = vec![0.0; n];
         let (mut rate, mut turn, mut phase) = (0.0, [0.0; 2], 0.0);
+        let mut row = vec![0.0; n];
         for (m, &share) in matches.as_slice().iter().zip(&kernel[..k]) {
-            let row = &self.shares[m.course * n..(m.course + 1) * n];
+            let p = &self.points[m.course * self.dims..(m.course + 1) * self.dims];
+            self.interpolator.weights(p, &mut row);
             let at = self.samples.phase(m);
-            let point = self.point(row, at);
+            let point = self.point(&row, at);
             let own = state.pace / point.secs_per_phase;
             add(share, &point.pose, &mut mean.pose);
             // Velocities are averaged, not slopes: that is what the paper's gradients are.
             add(share * own, &point.slope, &mut mean.slope);
-            add(share, row, &mut weights);
-            let p = &self.points[m.course * self.dims..(m.course + 1) * self.dims];
+            add(share, &row, &mut weights);
             add(share, p, &mut parameters);
             mean.travel.forward += share * point.travel.forward;
             mean.travel.left += share * point.travel.left;

@@ -199,34 +199,37 @@ impl Samples {
         }
     }
 
-    /// The nearest place of each course to `query` within the window, the `most` nearest of them. `extra(block, place)`
-    /// is what a place costs beside its distance.
+    /// The nearest place of each course to `query` within the window, the `most` nearest of them. `courses(block)` is what
+    /// courses cost beside the distance, `places(block, place)` what places do.
     pub fn nearest(
         &self,
         query: &[f64; MOST_AXES],
         window: Window,
         most: usize,
-        extra: impl Fn(usize, i64) -> Lane,
+        courses: impl Fn(usize) -> Lane,
+        places: impl Fn(usize, i64) -> Lane,
     ) -> Matches {
         Arch::new().dispatch(Scan {
             samples: self,
             query,
             window,
             most,
-            extra,
+            courses,
+            places,
         })
     }
 }
 
-struct Scan<'a, E> {
+struct Scan<'a, C, P> {
     samples: &'a Samples,
     query: &'a [f64; MOST_AXES],
     window: Window,
     most: usize,
-    extra: E,
+    courses: C,
+    places: P,
 }
 
-impl<E: Fn(usize, i64) -> Lane> WithSimd for Scan<'_, E> {
+impl<C: Fn(usize) -> Lane, P: Fn(usize, i64) -> Lane> WithSimd for Scan<'_, C, P> {
     type Output = Matches;
 
     // Inlined into a function compiled for the machine's vector instructions; the loops over lanes vectorise there.
@@ -237,10 +240,14 @@ impl<E: Fn(usize, i64) -> Lane> WithSimd for Scan<'_, E> {
         let mut costs = [[0.0; LANES]; MOST_PIECES + 2];
         let mut matches = Matches::new(self.most);
         for block in 0..self.samples.blocks() {
+            let own = (self.courses)(block);
             let (mut least, mut at) = ([f64::INFINITY; LANES], [0.0; LANES]);
             for (row, cost) in costs[..rows].iter_mut().enumerate() {
                 let place = first + row as i64;
-                let mut sum = (self.extra)(block, place);
+                let mut sum = (self.places)(block, place);
+                for (s, c) in sum.iter_mut().zip(&own) {
+                    *s += c;
+                }
                 for (q, lanes) in self.query.iter().zip(self.samples.lanes(block, place)) {
                     for (s, x) in sum.iter_mut().zip(lanes) {
                         *s += (q - x) * (q - x);
@@ -310,7 +317,8 @@ mod tests {
                     let off = place as f64 / pieces as f64 - phase;
                     [off * off; LANES]
                 };
-                let found = samples.nearest(&query, window, 6, extra);
+                let own = |block: usize| std::array::from_fn(|l| 1e-3 * (block * LANES + l) as f64);
+                let found = samples.nearest(&query, window, 6, own, extra);
                 let mut plain: Vec<Match> = (0..courses)
                     .map(|course| {
                         let costs: Vec<Lane> = (window.first..=window.last)
@@ -320,7 +328,7 @@ mod tests {
                                 } else {
                                     place
                                 };
-                                let mut sum = extra(0, place)[0];
+                                let mut sum = extra(0, place)[0] + 1e-3 * course as f64;
                                 for (a, q) in query[..axes].iter().enumerate() {
                                     let gap = q - value(course, row as usize, a);
                                     sum += gap * gap;

@@ -41,9 +41,11 @@ pub struct FlowSettings {
     pub correction: f64,
     /// How far behind and ahead of the phase postures are sought, in phase.
     pub window: [f64; 2],
-    /// A phase off by this much ...
+    /// A phase off by this much counts as much as a posture off by `sigma_rad`.
     pub sigma: f64,
-    /// ... counts as much as a posture off by this, radians.
+    /// Parameters off by this much count as much as a posture off by `sigma_rad`.
+    pub sigma_parameters: f64,
+    /// The distance that postures keep from the manifold, radians.
     pub sigma_rad: f64,
     /// Distance from the manifold beyond which a posture is out of the basin, radians.
     pub basin_rad: f64,
@@ -60,6 +62,7 @@ impl Default for FlowSettings {
             correction: 4.0,
             window: [0.03, 0.12],
             sigma: 0.08,
+            sigma_parameters: 0.25,
             sigma_rad: 0.05,
             basin_rad: 0.6,
         }
@@ -89,7 +92,13 @@ impl FlowSettings {
                 self.neighbours
             ));
         }
-        let positive = [self.correction, self.sigma, self.sigma_rad, self.basin_rad];
+        let positive = [
+            self.correction,
+            self.sigma,
+            self.sigma_parameters,
+            self.sigma_rad,
+            self.basin_rad,
+        ];
         if positive.iter().any(|v| !(v.is_finite() && *v > 0.0)) {
             return wrong("correction, sigmas and basin are positive".into());
         }
