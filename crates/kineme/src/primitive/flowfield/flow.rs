@@ -13,6 +13,8 @@ const SETTLING: f64 = 0.98;
 const PHASE_GAIN: f64 = 4.0;
 /// Bounds of the phase's rate, as multiples of the field's own: it never stands, so that every movement ends.
 const PHASE_RATES: [f64; 2] = [0.5, 2.0];
+/// Bounds of a pace that is learned from observation.
+const PACES: [f64; 2] = [0.5, 2.0];
 /// A difference of velocities counts as much as that of postures this much later, seconds.
 const VELOCITY_SECS: f64 = 0.15;
 /// What entering at the end of a movement costs more than at its beginning, radians: where both are the same posture,
@@ -30,6 +32,8 @@ pub struct FlowState {
     pub(super) phase: f64,
     pub(super) parameters: Vec<f64>,
     pub(super) pace: f64,
+    /// How far the phase has come since the last observation.
+    pub(super) advanced: f64,
 }
 
 impl FlowState {
@@ -144,6 +148,7 @@ impl Flowfield {
             pose,
             phase,
             pace: 1.0,
+            advanced: 0.0,
         }
     }
 
@@ -322,6 +327,7 @@ impl Flowfield {
                 Memory::None => by.parameters.clone(),
             },
             pace: state.pace,
+            advanced: state.advanced + secs * by.phase_rate,
         }
     }
 
@@ -355,7 +361,7 @@ impl Flowfield {
     }
 
     /// Blends a measured posture into a state: posture, phase and parameters go the share `gain` (0 to 1) of the way from
-    /// what the field predicted to what was measured. With 1 the lag of whatever follows the field would stall it, with 0 nothing
+    /// what the field predicted to what was measured, and the pace follows. With 1 the lag of whatever follows the field would stall it, with 0 nothing
     /// is learned of disturbances; 0.2 serves a robot, more serves an observer.
     ///
     /// # Errors
@@ -370,7 +376,14 @@ impl Flowfield {
         let measured = self.named(measured);
         if self.settings.memory == Memory::Phase {
             let seen = self.near(&measured, state.phase, &state.parameters);
-            state.phase = self.on_curve(state.phase + gain * (seen.phase - state.phase));
+            let ahead = seen.phase - state.phase;
+            if self.settings.learn_pace && state.advanced > 0.0 {
+                // The gains of a tracker of place and velocity (Benedict and Bordner 1962).
+                let faster = 1.0 + gain * gain / (2.0 - gain) * ahead / state.advanced;
+                state.pace = (state.pace * faster).clamp(PACES[0], PACES[1]);
+            }
+            state.advanced = 0.0;
+            state.phase = self.on_curve(state.phase + gain * ahead);
             for (p, q) in state.parameters.iter_mut().zip(&seen.parameters) {
                 *p += gain * (q - *p);
             }

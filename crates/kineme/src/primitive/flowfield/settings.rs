@@ -47,6 +47,8 @@ pub struct FlowSettings {
     pub sigma_parameters: f64,
     /// The distance that postures keep from the manifold, radians.
     pub sigma_rad: f64,
+    /// Whether the pace of what is observed is learned, too.
+    pub learn_pace: bool,
     /// Distance from the manifold beyond which a posture is out of the basin, radians.
     pub basin_rad: f64,
 }
@@ -64,6 +66,7 @@ impl Default for FlowSettings {
             sigma: 0.08,
             sigma_parameters: 0.25,
             sigma_rad: 0.05,
+            learn_pace: true,
             basin_rad: 0.6,
         }
     }
