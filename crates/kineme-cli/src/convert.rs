@@ -1,4 +1,4 @@
-//! `kineme convert`: motions as BVH or CSV, as they are or on another body.
+//! `kineme convert`: motions as BVH, CSV or NPZ, as they are or on another body.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use kineme::{Format, Motion, Recording, Skeleton, Source as Origin};
 use kineme_formats::input::Entry;
 use kineme_formats::positions::Frame;
 use kineme_formats::tables::body_angles;
-use kineme_formats::{bvh, output, positions};
+use kineme_formats::{bvh, npz, output, positions};
 use serde_json::json;
 
 use crate::args::{ConvertArgs, Global, Written};
@@ -27,8 +27,14 @@ struct Job<'a> {
 #[derive(Debug, Clone, Copy)]
 enum What {
     Bvh,
+    /// A table of a body's joint angles.
     Angles,
+    /// Rotations or joint angles, and positions, as NPZ.
+    Arrays,
+    /// A table of positions.
     Positions(Frame),
+    /// Positions as NPZ.
+    PositionArrays(Frame),
 }
 
 /// What was made of a motion.
@@ -182,6 +188,7 @@ impl Job<'_> {
             What::Angles => body_angles::table(&motion)
                 .write(motion.name())
                 .map_err(unwritten)?,
+            What::Arrays => npz::write(&motion).map_err(unwritten)?,
             _ => self.written(&as_recording(&motion, recording)?)?,
         };
         Ok(Made {
@@ -199,7 +206,11 @@ impl Job<'_> {
             What::Positions(frame) => {
                 positions::write(recording, frame, &mut bytes).map_err(unwritten)?;
             }
-            _ => bvh::write(recording, &mut bytes).map_err(|e| {
+            What::PositionArrays(frame) => {
+                bytes = npz::write_positions(recording, frame).map_err(unwritten)?;
+            }
+            What::Arrays => bytes = npz::write_recording(recording).map_err(unwritten)?,
+            What::Bvh | What::Angles => bvh::write(recording, &mut bytes).map_err(|e| {
                 unwritten(e)
                     .hint("--body ares gives positions a skeleton; --positions writes them as CSV")
             })?,
@@ -225,12 +236,12 @@ fn format(args: &ConvertArgs) -> Result<Written, Failure> {
         .out
         .extension()
         .map(|e| e.to_string_lossy().to_lowercase());
-    if let Some(later @ ("parquet" | "npz")) = extension.as_deref() {
+    if extension.as_deref() == Some("parquet") {
         return Err(Failure::usage(format!(
-            "`{}`: {later} is not written by this version",
+            "`{}`: parquet is not written by this version",
             args.out.display()
         ))
-        .hint("write .bvh or .csv"));
+        .hint("write .csv or .npz"));
     }
     if let Some(to) = args.to {
         return Ok(to);
@@ -246,7 +257,7 @@ fn format(args: &ConvertArgs) -> Result<Written, Failure> {
             "`{}`: `.{other}` is no format that can be written",
             args.out.display()
         ))
-        .hint("write .bvh or .csv, or say --to bvh or --to csv")),
+        .hint("write .bvh, .csv or .npz, or say --to bvh, --to csv or --to npz")),
         _ => Ok(Written::Bvh),
     }
 }
@@ -256,6 +267,7 @@ fn by_extension(out: &Path) -> Option<Written> {
     match extension.as_str() {
         "bvh" => Some(Written::Bvh),
         "csv" => Some(Written::Csv),
+        "npz" => Some(Written::Npz),
         _ => None,
     }
 }
@@ -264,6 +276,7 @@ fn extension(format: Written) -> &'static str {
     match format {
         Written::Bvh => "bvh",
         Written::Csv => "csv",
+        Written::Npz => "npz",
     }
 }
 
@@ -274,6 +287,8 @@ fn what(args: &ConvertArgs, format: Written) -> Result<What, Failure> {
         Frame::Metres
     };
     match (format, args.positions) {
+        (Written::Npz, true) => Ok(What::PositionArrays(frame)),
+        (Written::Npz, false) => Ok(What::Arrays),
         (Written::Csv, true) => Ok(What::Positions(frame)),
         (Written::Csv, false) if args.body.is_some() => Ok(What::Angles),
         (Written::Csv, false) => Err(Failure::usage(

@@ -143,7 +143,7 @@ fn a_vocabulary_names_its_sources_by_their_hashes() {
     let vocabulary = kineme_formats::vocabulary::read("v.kineme", &bytes).expect("a vocabulary");
     let source = fs::read(folder.path().join("arms.bvh")).expect("a fixture");
     let hash = blake3::hash(&source).to_hex().to_string();
-    for exemplar in vocabulary.primitives().iter().flat_map(|p| &p.exemplars) {
+    for exemplar in vocabulary.primitives().iter().flat_map(|p| p.exemplars()) {
         assert_eq!(exemplar.provenance.blake3.as_ref(), Some(&hash));
         assert_eq!(exemplar.provenance.motion, "arms.bvh");
     }
@@ -260,6 +260,54 @@ fn converting_loses_nothing() {
     done(at, "convert arms.bvh direct.csv --body ares --positions");
     done(at, "convert ares.bvh through.csv --body ares --positions");
     check_near(at, "direct.csv", "through.csv", 1e-6);
+}
+
+/// The f64 numbers of an array in an NPZ archive.
+fn array(folder: &Path, archive: &str, name: &str) -> Vec<f64> {
+    let file = fs::File::open(folder.join(archive)).expect("an archive");
+    let mut zip = zip::ZipArchive::new(file).expect("an archive");
+    let mut bytes = Vec::new();
+    let mut array = zip.by_name(&format!("{name}.npy")).expect("an array");
+    std::io::Read::read_to_end(&mut array, &mut bytes).expect("an array");
+    let data = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    let (numbers, _) = bytes[data..].as_chunks::<8>();
+    numbers.iter().map(|b| f64::from_le_bytes(*b)).collect()
+}
+
+#[test]
+fn arrays_hold_the_numbers_of_the_tables() {
+    let folder = folder();
+    let at = folder.path();
+    // A conversion to NPZ, the array to look at, and the same as a table after so many columns.
+    let cases = [
+        ("arms.bvh {} --positions", "positions", 1),
+        ("arms.bvh {} --positions --native", "positions", 1),
+        ("points.csv {} --positions --rate 10", "positions", 1),
+        ("arms.bvh {} --body ares --positions", "positions", 1),
+        ("arms.bvh {} --body adonis", "poses", 5),
+        ("points.csv {} --body ares", "poses", 5),
+    ];
+    for (i, (line, name, skipped)) in cases.into_iter().enumerate() {
+        let (npz, csv) = (format!("{i}.npz"), format!("{i}.csv"));
+        done(at, &format!("convert {}", line.replace("{}", &npz)));
+        done(at, &format!("convert {}", line.replace("{}", &csv)));
+        let rows = numbers(at, &csv);
+        let table: Vec<f64> = rows
+            .iter()
+            .flat_map(|row| &row[skipped..])
+            .copied()
+            .collect();
+        assert_eq!(array(at, &npz, name), table, "{line}");
+        let time = array(at, &npz, "time");
+        assert_eq!(time.len(), rows.len(), "{line}");
+        assert!(
+            (time[1] * array(at, &npz, "rate")[0] - 1.0).abs() < 1e-12,
+            "{line}"
+        );
+    }
+    // As it is: the file's own rotations; a point cloud has none. Folders are written too.
+    done(at, "convert . arrays --to npz");
+    assert!(array(at, "arrays/arms.npz", "rotations").len() > 4);
 }
 
 #[test]

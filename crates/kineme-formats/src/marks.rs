@@ -27,44 +27,33 @@ const HEADER: &str = "columns `file`, `start`, `end` and optionally `recording`"
 /// `start` is negative or `end` not after it; when there is no mark at all.
 pub fn parse(name: &str, bytes: &[u8]) -> Result<Vec<Mark>> {
     let mut sheet = Sheet::open(name, bytes, HEADER)?;
-    let header_error = |found: String| FormatError::new(name, Place::Line(1), found, HEADER);
     let mut columns = [None; 4];
     const NAMES: [&str; 4] = ["file", "start", "end", "recording"];
     for (column, cell) in sheet.header().iter().enumerate() {
         match NAMES.iter().position(|n| n == cell) {
             Some(which) => columns[which] = Some(column),
-            None => return Err(header_error(quoted(cell))),
+            None => return Err(sheet.header_error(quoted(cell), HEADER)),
         }
     }
     let [Some(file), Some(start), Some(end), recording] = columns else {
-        return Err(header_error(quoted(&sheet.header().join(","))));
+        let found = quoted(&sheet.header().join(","));
+        return Err(sheet.header_error(found, HEADER));
     };
 
     let mut marks = Vec::new();
     while let Some(row) = sheet.next_row()? {
-        let mark = Mark {
-            file: row.text(file)?.to_string(),
-            start: row.required(start, "start")?,
-            end: row.required(end, "end")?,
+        let span = row.span(start, end)?;
+        let (start, end) = span.ok_or_else(|| row.error("no start", "a span in seconds"))?;
+        marks.push(Mark {
+            file: row.motion(file)?,
+            start,
+            end,
             recording: match recording.map(|c| row.text(c)).transpose()? {
                 None | Some("") => None,
                 Some(name) => Some(name.to_string()),
             },
             line: row.line(),
-        };
-        if mark.file.is_empty() {
-            return Err(row.error("no file", "the name of a motion"));
-        }
-        if mark.start < 0.0 {
-            return Err(row.error(format!("start {}", mark.start), "0 or more seconds"));
-        }
-        if mark.end <= mark.start {
-            return Err(row.error(
-                format!("end {} not after start {}", mark.end, mark.start),
-                "an end after the start",
-            ));
-        }
-        marks.push(mark);
+        });
     }
     if marks.is_empty() {
         return Err(FormatError::new(

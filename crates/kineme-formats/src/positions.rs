@@ -34,19 +34,9 @@ pub fn write(recording: &Recording, frame: Frame, out: &mut dyn Write) -> Result
             "a place to write to",
         )
     };
-    let bones = recording.source().format == Format::AsfAmc;
-    let joints = recording.joints();
     let mut header = vec!["frame".to_owned()];
-    let mut columns = |name: &str| {
-        for axis in ["x", "y", "z"] {
-            header.push(format!("{name}_{axis}"));
-        }
-    };
-    for joint in joints {
-        columns(&joint.name);
-        if joint.tip.is_some() && !bones {
-            columns(&format!("{}_End", joint.name));
-        }
+    for name in names(recording) {
+        header.extend(["x", "y", "z"].map(|axis| format!("{name}_{axis}")));
     }
     let mut table = csv::Writer::from_writer(out);
     table.write_record(&header).map_err(failed)?;
@@ -54,18 +44,10 @@ pub fn write(recording: &Recording, frame: Frame, out: &mut dyn Write) -> Result
     for index in 0..recording.frames() {
         row.clear();
         row.push(index.to_string());
-        for (joint, placed) in joints.iter().zip(recording.placements(index)) {
-            let tip = match (joint.tip, placed.position, placed.rotation) {
-                (Some(tip), Some(place), Some(turn)) => Some(place + turn * tip),
-                _ => None,
-            };
-            if bones && joint.tip.is_some() {
-                point(recording, frame, tip, &mut row);
-                continue;
-            }
-            point(recording, frame, placed.position, &mut row);
-            if joint.tip.is_some() {
-                point(recording, frame, tip, &mut row);
+        for point in points(recording, frame, index) {
+            match point {
+                Some(point) => row.extend(point.iter().map(|v| shortest(*v))),
+                None => row.extend([const { String::new() }; 3]),
             }
         }
         table.write_record(&row).map_err(failed)?;
@@ -73,15 +55,43 @@ pub fn write(recording: &Recording, frame: Frame, out: &mut dyn Write) -> Result
     table.flush().map_err(|e| failed(e.into()))
 }
 
-fn point(recording: &Recording, frame: Frame, place: Option<Vector3<f64>>, row: &mut Vec<String>) {
-    match place {
-        Some(place) => {
-            let place = match frame {
-                Frame::Metres => place,
-                Frame::Native => recording.source().to_native(place),
-            };
-            row.extend(place.iter().map(|v| shortest(*v)));
+/// The names of the points, in the order of [`points`].
+pub(crate) fn names(recording: &Recording) -> Vec<String> {
+    let mut names = Vec::new();
+    for joint in recording.joints() {
+        names.push(joint.name.clone());
+        if joint.tip.is_some() && !has_bones(recording) {
+            names.push(format!("{}_End", joint.name));
         }
-        None => row.extend([String::new(), String::new(), String::new()]),
     }
+    names
+}
+
+/// Where the points are at a frame; `None` where one was not seen.
+pub(crate) fn points(
+    recording: &Recording,
+    frame: Frame,
+    index: usize,
+) -> Vec<Option<Vector3<f64>>> {
+    let mut points = Vec::new();
+    for (joint, placed) in recording.joints().iter().zip(recording.placements(index)) {
+        if joint.tip.is_none() || !has_bones(recording) {
+            points.push(placed.position);
+        }
+        if let Some(tip) = joint.tip {
+            let joint = placed.position.zip(placed.rotation);
+            points.push(joint.map(|(place, turn)| place + turn * tip));
+        }
+    }
+    if frame == Frame::Native {
+        for point in points.iter_mut().flatten() {
+            *point = recording.source().to_native(*point);
+        }
+    }
+    points
+}
+
+/// Whether a joint with a tip is a bone and told by that alone.
+fn has_bones(recording: &Recording) -> bool {
+    recording.source().format == Format::AsfAmc
 }

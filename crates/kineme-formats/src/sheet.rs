@@ -10,6 +10,7 @@ pub(crate) struct Sheet<R> {
     file: String,
     reader: csv::Reader<LineStarts<R>>,
     header: Vec<String>,
+    header_line: usize,
     record: csv::ByteRecord,
 }
 
@@ -26,6 +27,7 @@ impl<R: Read> Sheet<R> {
             file: file.to_string(),
             reader,
             header: Vec::new(),
+            header_line: 1,
             record: csv::ByteRecord::new(),
         };
         let Some(row) = sheet.read()? else {
@@ -43,13 +45,18 @@ impl<R: Read> Sheet<R> {
         if let Some(twice) = header.iter().find(|h| !seen.insert(h.as_str())) {
             return Err(row.error(format!("column `{twice}` twice"), "every column once"));
         }
-        sheet.header = header;
+        (sheet.header_line, sheet.header) = (row.line(), header);
         Ok(sheet)
     }
 
     /// The header's cells, trimmed, each once.
     pub fn header(&self) -> &[String] {
         &self.header
+    }
+
+    /// An error in the header.
+    pub fn header_error(&self, found: impl Into<String>, expected: &str) -> FormatError {
+        FormatError::new(&self.file, Place::Line(self.header_line), found, expected)
     }
 
     /// The next row, with as many cells as the header; `None` at the end.
@@ -180,6 +187,31 @@ impl<'a> Row<'a> {
     pub fn required(&self, column: usize, what: &str) -> Result<f64> {
         self.number(column)?
             .ok_or_else(|| self.error(format!("no {what}"), "a finite number"))
+    }
+
+    /// A cell that names a motion.
+    pub fn motion(&self, column: usize) -> Result<String> {
+        let name = self.text(column)?;
+        if name.is_empty() {
+            return Err(self.error("no file", "the name of a motion"));
+        }
+        Ok(name.to_string())
+    }
+
+    /// Cells of a span of time in seconds: none, or a start of 0 or more and an end after it.
+    pub fn span(&self, start: usize, end: usize) -> Result<Option<(f64, f64)>> {
+        if self.number(start)?.is_none() && self.number(end)?.is_none() {
+            return Ok(None);
+        }
+        let (start, end) = (self.required(start, "start")?, self.required(end, "end")?);
+        if start < 0.0 {
+            return Err(self.error(format!("start {start}"), "0 or more seconds"));
+        }
+        if end <= start {
+            let found = format!("end {end} not after start {start}");
+            return Err(self.error(found, "an end after the start"));
+        }
+        Ok(Some((start, end)))
     }
 }
 

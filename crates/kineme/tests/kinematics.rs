@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use kineme::math::rotation::{exp, log, right_jacobian};
 use kineme::motion::{landmark_dims, mirror_landmarks};
-use kineme::skeleton::{Effector, JointKind};
+use kineme::skeleton::{Effector, JointKind, Range};
 use kineme::{Motion, Role, Root, Skeleton, adonis, ares};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -207,4 +207,174 @@ fn a_reach_needs_an_effector_and_shoulders() {
     }
     let armless = Skeleton::new("armless", joints, adonis.effectors().to_vec()).expect("a body");
     assert!(armless.reach(0).is_err_and(|e| e.is_unsupported()));
+}
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// Every coordinate of a pose against its limits, as `Skeleton::limits` measures it.
+fn measured(body: &Skeleton, pose: &[f64]) -> Vec<(f64, Range)> {
+    let mut measured = Vec::new();
+    for (j, joint) in body.joints().iter().enumerate() {
+        let at = body.coordinates(j);
+        match body.limits(j) {
+            [range] => measured.push((pose[at.start], *range)),
+            ranges @ [_, _, _] => {
+                let v = Vector3::from_column_slice(&pose[at]);
+                let axes = [joint.axes.flexion, joint.axes.abduction, joint.axes.axial];
+                measured.extend(axes.iter().zip(ranges).map(|(a, r)| (v.dot(a), *r)));
+            }
+            _ => {}
+        }
+    }
+    measured
+}
+
+/// How far inside its limits a coordinate is held back, as documented.
+fn transition(range: &Range) -> f64 {
+    (3.0 * DEGREE).min((range.high - range.low) / 8.0)
+}
+
+fn limited(body: &Skeleton, pose: &[f64]) -> Vec<f64> {
+    let mut pose = pose.to_vec();
+    body.limited(&mut pose);
+    pose
+}
+
+#[test]
+fn what_is_well_inside_its_limits_stays_bit_for_bit() {
+    let mut random = Pcg64::seed_from_u64(8);
+    for body in bodies() {
+        let neutral = body.neutral();
+        assert_eq!(limited(&body, &neutral), neutral, "{}", body.name());
+        for _ in 0..50 {
+            let pose = limited(&body, &random_pose(&body, &mut random, 3.0));
+            let middle = body.neutral();
+            // Half-way from any permitted posture to standing.
+            let pose: Vec<f64> = pose
+                .iter()
+                .zip(&middle)
+                .map(|(a, b)| 0.5 * (a + b))
+                .collect();
+            let inside = measured(&body, &pose)
+                .iter()
+                .all(|(x, r)| (r.low + transition(r)..=r.high - transition(r)).contains(x));
+            assert!(inside, "{}", body.name());
+            let mut same = pose.clone();
+            assert_eq!(body.limited(&mut same), 0, "{}", body.name());
+            assert_eq!(same, pose, "{}", body.name());
+        }
+    }
+}
+
+#[test]
+fn clinical_postures_within_the_ranges_are_hardly_moved() {
+    let mut random = Pcg64::seed_from_u64(9);
+    for body in bodies() {
+        for (j, joint) in body.joints().iter().enumerate() {
+            let JointKind::Ball { ranges, .. } = &joint.kind else {
+                continue;
+            };
+            for _ in 0..200 {
+                let [f, a, x] = ranges.map(|r| random.random_range(r.low..r.high));
+                let mut pose = body.neutral();
+                body.set_rotation(&mut pose, j, &joint.axes.rotation(f, a, x), None);
+                let after = limited(&body, &pose);
+                for c in body.coordinates(j) {
+                    let moved = (after[c] - pose[c]).abs() / DEGREE;
+                    assert!(moved < 1.5, "{} of {}: {moved}", joint.name, body.name());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn limited_poses_are_within_the_limits_and_limiting_them_again_does_little() {
+    let mut random = Pcg64::seed_from_u64(10);
+    for body in bodies() {
+        for reach in [0.5, 2.0, 6.0, 1e3] {
+            let pose = random_pose(&body, &mut random, reach);
+            let mut once = pose.clone();
+            let count = body.limited(&mut once);
+            let (before, after) = (measured(&body, &pose), measured(&body, &once));
+            let again = measured(&body, &limited(&body, &once));
+            let held =
+                |(x, r): &(f64, Range)| *x > r.high - transition(r) || *x < r.low + transition(r);
+            assert_eq!(count, before.iter().filter(|m| held(m)).count());
+            for ((x, range), (y, _)) in after.iter().zip(&again) {
+                assert!(*x >= range.low - 1e-9 && *x <= range.high + 1e-9, "{x}");
+                assert!((x - y).abs() < 0.25 * transition(range), "{x} to {y}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_root_has_no_limit() {
+    let [_, ares] = bodies();
+    let mut pose = ares.neutral();
+    pose[0] = 2.0;
+    pose[1] = -3.0;
+    assert_eq!(ares.limited(&mut pose), 0);
+    assert_eq!(pose[..2], [2.0, -3.0]);
+}
+
+#[test]
+fn limits_are_continuous_and_so_are_their_first_derivatives() {
+    const STEP: f64 = 1e-5;
+    let mut random = Pcg64::seed_from_u64(11);
+    for body in bodies() {
+        for _ in 0..20 {
+            let from = random_pose(&body, &mut random, 0.3);
+            let way = random_pose(&body, &mut random, 1.0);
+            let norm = way.iter().map(|v| v * v).sum::<f64>().sqrt();
+            // Through the limits of most coordinates, a tenth of a degree at a time.
+            for i in 0..400 {
+                let at = |s: f64| {
+                    let pose: Vec<f64> = from.iter().zip(&way).map(|(a, b)| a + b * s).collect();
+                    limited(&body, &pose)
+                };
+                let s = f64::from(i) * 0.1 * DEGREE * norm / 4.0;
+                let slope = |s: f64| -> Vec<f64> {
+                    let (a, b) = (at(s - STEP), at(s + STEP));
+                    a.iter()
+                        .zip(&b)
+                        .map(|(a, b)| (b - a) / (2.0 * STEP))
+                        .collect()
+                };
+                for (a, b) in slope(s).iter().zip(slope(s + 2.0 * STEP)) {
+                    // Tanh bends by at most 0.77 over the transition, here at least half a degree.
+                    assert!(a.abs() <= 3.0 && (a - b).abs() < 0.02, "{i}: {a} then {b}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn limits_are_the_same_in_the_mirror() {
+    for body in bodies() {
+        let motion = random_motion(&body, 12, 10);
+        let wild: Vec<f64> = motion.poses().iter().map(|v| v * 6.0).collect();
+        let wild = Motion::new(
+            "wild",
+            Arc::clone(&body),
+            60.0,
+            wild,
+            motion.roots().to_vec(),
+        )
+        .expect("a motion");
+        let mirrored = wild.mirrored().expect("symmetric");
+        for f in 0..wild.frames() {
+            let mut here = limited(&body, wild.pose(f));
+            here = Motion::new("one", Arc::clone(&body), 60.0, here, vec![Root::ORIGIN])
+                .and_then(|m| m.mirrored())
+                .expect("symmetric")
+                .pose(0)
+                .to_vec();
+            for (a, b) in here.iter().zip(limited(&body, mirrored.pose(f))) {
+                assert!((a - b).abs() < 1e-9, "{}", body.name());
+            }
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! f(p, τ): laws of primitives over choreographed exemplars.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use kineme::choreography::{Key, perform};
 use kineme::primitive::{Interpolation, Parameterisation};
@@ -281,9 +281,10 @@ proptest! {
 
     #[test]
     fn a_target_taken_from_the_primitive_is_reached(height in 0.0..1.0, side in 0.0..1.0) {
-        let body = Arc::new(ares().expect("ares"));
-        let p = learned(&body, &Modelling::default(), true);
-        let aim = p.aim("right_hand").expect("an effector");
+        static REACH: LazyLock<Primitive> = LazyLock::new(|| {
+            learned(&Arc::new(ares().expect("ares")), &Modelling::default(), true)
+        });
+        let aim = REACH.aim("right_hand").expect("an effector");
         let from = [height, side];
         let target = aim.position(&from, aim.extreme(&from).expect("a phase")).expect("a place");
         let reached = aim.at(&target);
@@ -304,4 +305,103 @@ fn a_target_out_of_reach_is_missed_by_what_is_said() {
         (reached.miss_m - (Vector3::new(2.0, 0.0, 0.0) - reached.position).norm()).abs() < 1e-12
     );
     assert!(p.aim("tail").is_err_and(|e| e.is_unknown_name()));
+}
+
+/// Both arms swinging in turn, `cycles` times, begun at `from` of a cycle.
+fn marching(
+    body: &Arc<Skeleton>,
+    name: &str,
+    cycles: f64,
+    from: f64,
+    secs: f64,
+    swing: f64,
+) -> Exemplar {
+    let rate = 60.0;
+    let frames = (cycles * secs * rate) as usize + 1;
+    let mut poses = Vec::new();
+    let mut roots = Vec::new();
+    for f in 0..frames {
+        let turn = std::f64::consts::TAU * (from + f as f64 / (secs * rate));
+        let mut pose = body.neutral();
+        for (role, sign) in [(Role::LeftUpperArm, 1.0), (Role::RightUpperArm, -1.0)] {
+            let flexion = 10.0 + sign * swing * (turn.sin() + 0.2 * (2.0 * turn).sin());
+            body.set_clinical(&mut pose, role, &[flexion, 8.0])
+                .expect("an arm");
+        }
+        poses.extend(pose);
+        roots.push(kineme::Root {
+            position: Vector3::new(1.2 * f as f64 / rate, 0.0, 0.9),
+            yaw: 0.0,
+        });
+    }
+    let motion = kineme::Motion::new(name, Arc::clone(body), rate, poses, roots).expect("a motion");
+    Exemplar {
+        provenance: Provenance {
+            motion: name.into(),
+            start_secs: 0.0,
+            end_secs: motion.duration_secs(),
+            blake3: None,
+        },
+        motion,
+        adverbs: None,
+    }
+}
+
+#[test]
+fn a_cycle_is_found_closed_and_begun_at_one_event() {
+    let body = Arc::new(adonis().expect("adonis"));
+    let exemplars: Vec<Exemplar> = (0..6)
+        .map(|i| {
+            let i = f64::from(i);
+            marching(
+                &body,
+                &format!("march-{i}"),
+                2.6 + 0.2 * i,
+                0.17 * i,
+                0.9 + 0.04 * i,
+                20.0 + 3.0 * i,
+            )
+        })
+        .collect();
+    let p = Primitive::learn("march", exemplars, &Modelling::default()).expect("a cycle");
+    assert!(p.is_cyclic());
+    for i in 0..6 {
+        let (start, end) = (p.registered(i, 0.0), p.registered(i, 1.0 - 1e-12));
+        assert!(gap(&start.pose, &end.pose) < 1e-9);
+        assert!(gap(&start.slope, &end.slope) < 1e-6);
+        let secs = p.at(p.point(i)).expect("a course").duration_secs();
+        assert!(secs > 0.7 && secs < 1.3, "{secs}");
+        assert!((p.registered(i, 0.3).travel.forward - 1.2).abs() < 0.02);
+        // In step: at every phase the exemplars differ by their swing alone.
+        for k in 0..10 {
+            let phase = f64::from(k) / 10.0;
+            let off = gap(&p.registered(i, phase).pose, &p.registered(0, phase).pose);
+            assert!(off < 0.45, "{i} {phase} {off}");
+        }
+    }
+    let declared = Modelling {
+        cyclic: Some(false),
+        ..Modelling::default()
+    };
+    let strokes = (0..3)
+        .map(|i| marching(&body, &format!("march-{i}"), 2.0, 0.0, 1.0, 20.0))
+        .collect();
+    assert!(
+        !Primitive::learn("march", strokes, &declared)
+            .expect("a stroke")
+            .is_cyclic()
+    );
+}
+
+#[test]
+fn a_mirrored_exemplar_is_refused_by_name() {
+    let body = Arc::new(ares().expect("ares"));
+    let mut exemplars = grid(&body, false);
+    exemplars[5].motion = exemplars[5].motion.mirrored().expect("mirrored");
+    let told = Primitive::learn("reach", exemplars, &Modelling::default());
+    let told = told.expect_err("the other arm").to_string();
+    assert!(
+        told.contains("reach-12") && told.contains("mirror"),
+        "{told}"
+    );
 }

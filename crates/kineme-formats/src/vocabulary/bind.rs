@@ -2,21 +2,25 @@
 
 use std::sync::Arc;
 
+use kineme::motion::landmark_dims;
+use kineme::primitive::{Group, Used};
 use kineme::{
-    Behavior, Exemplar, Motion, Primitive, Provenance, Root, Transitions, Vocabulary, body,
+    Behavior, Exemplar, Motion, Primitive, Provenance, Root, Skeleton, Transitions, Vocabulary,
+    body,
 };
 use nalgebra::Vector3;
 
 use super::{
-    BehaviorMeta, ExemplarFrames, ExemplarMeta, PrimitiveMeta, TransitionMeta, VocabularyFile,
-    VocabularyMeta,
+    BehaviorMeta, ExemplarMeta, ExemplarTensors, FitTensors, GroupMeta, PrimitiveMeta,
+    TransitionMeta, VocabularyFile, VocabularyMeta,
 };
 use crate::error::{FormatError, Place, Result};
 
 /// A vocabulary as the bytes of a file named `name` in messages; the same vocabulary gives the same bytes.
 ///
 /// # Errors
-/// When the body is none that [`kineme::body`] knows by its name, when there is no primitive, or a name is blank.
+/// When the body is none that [`kineme::body`] knows by its name, when there is no primitive, a name is blank, or a
+/// warp wraps in a primitive that does not, or the other way round.
 pub fn write(vocabulary: &Vocabulary, name: &str) -> Result<Vec<u8>> {
     let skeleton = vocabulary.body();
     if !body(skeleton.name()).is_ok_and(|known| known == **skeleton) {
@@ -26,6 +30,17 @@ pub fn write(vocabulary: &Vocabulary, name: &str) -> Result<Vec<u8>> {
             format!("the body `{}`", skeleton.name()),
             "a body known by its name",
         ));
+    }
+    let wraps = |p: &Primitive| {
+        p.fitted()
+            .warps
+            .iter()
+            .all(|w| w.is_closed() == p.is_cyclic())
+    };
+    if let Some(p) = vocabulary.primitives().iter().find(|p| !wraps(p)) {
+        let found = format!("open and closed warps in the primitive `{}`", p.name());
+        let expected = "closed warps where phase wraps, and only there";
+        return Err(FormatError::new(name, Place::File, found, expected));
     }
     file_of(vocabulary).write(name)
 }
@@ -39,12 +54,22 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vocabulary> {
     let refused =
         |e: kineme::Error| FormatError::new(name, Place::File, e.to_string(), "a valid vocabulary");
     let skeleton = Arc::new(body(&file.meta.body).map_err(refused)?);
-    if skeleton.coordinate_names() != file.meta.coordinates {
+    let landmarks = landmark_dims(&skeleton);
+    let coordinates = &file.meta.coordinates;
+    if skeleton.coordinate_names() != *coordinates || file.meta.landmarks != landmarks as u64 {
         return Err(FormatError::new(
             name,
             Place::File,
-            format!("{} coordinates", file.meta.coordinates.len()),
-            format!("the {} of the body `{}`", skeleton.dof(), skeleton.name()),
+            format!(
+                "{} coordinates and {} numbers of landmarks",
+                coordinates.len(),
+                file.meta.landmarks
+            ),
+            format!(
+                "the {} and {landmarks} of the body `{}`",
+                skeleton.dof(),
+                skeleton.name()
+            ),
         ));
     }
     let place = |primitive: &str| {
@@ -63,18 +88,17 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vocabulary> {
         name: b.name,
         primitives: b.groups,
     });
-    let mut frames = file.exemplars.into_iter();
-    let primitives = file.meta.primitives.into_iter().map(|p| {
-        let exemplars = p.exemplars.into_iter().zip(&mut frames);
-        Ok(Primitive {
-            name: p.name,
-            exemplars: exemplars
-                .map(|(meta, frames)| exemplar(meta, frames, &skeleton))
-                .collect::<kineme::Result<_>>()?,
-            members: p.members as usize,
-            coherence: p.coherence,
-        })
-    });
+    let mut movements = file.exemplars.into_iter();
+    let fits = file.fits.into_iter();
+    let primitives = file
+        .meta
+        .primitives
+        .into_iter()
+        .zip(fits)
+        .map(|(meta, fit)| {
+            let movements = movements.by_ref().take(meta.exemplars.len()).collect();
+            primitive(meta, fit, movements, &skeleton)
+        });
     let primitives = primitives.collect::<kineme::Result<_>>().map_err(refused)?;
     Vocabulary::new(
         Arc::clone(&skeleton),
@@ -85,12 +109,42 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vocabulary> {
     .map_err(refused)
 }
 
+fn primitive(
+    meta: PrimitiveMeta,
+    tensors: FitTensors,
+    movements: Vec<ExemplarTensors>,
+    skeleton: &Arc<Skeleton>,
+) -> kineme::Result<Primitive> {
+    let used = meta.exemplars.iter().map(|e| Used {
+        start: e.used[0],
+        end: e.used[1],
+        shift: e.shift,
+    });
+    let used = used.collect();
+    let (mut exemplars, mut warps) = (Vec::new(), Vec::new());
+    for (meta, movement) in meta.exemplars.into_iter().zip(movements) {
+        exemplars.push(exemplar(meta, movement.poses, &movement.root, skeleton)?);
+        warps.push(movement.warp);
+    }
+    let group = meta.group.map(|g| Group {
+        members: g.members as usize,
+        coherence: g.coherence,
+    });
+    Primitive::from_fit(
+        &meta.name,
+        exemplars,
+        meta.fit.with(tensors, used, warps)?,
+        group,
+    )
+}
+
 fn exemplar(
     meta: ExemplarMeta,
-    frames: ExemplarFrames,
-    skeleton: &Arc<kineme::Skeleton>,
+    poses: Vec<f64>,
+    root: &[[f64; 4]],
+    skeleton: &Arc<Skeleton>,
 ) -> kineme::Result<Exemplar> {
-    let roots = frames.root.iter().map(|&[x, y, z, yaw]| Root {
+    let roots = root.iter().map(|&[x, y, z, yaw]| Root {
         position: Vector3::new(x, y, z),
         yaw,
     });
@@ -99,7 +153,7 @@ fn exemplar(
             meta.motion.as_str(),
             Arc::clone(skeleton),
             meta.rate_hz,
-            frames.poses,
+            poses,
             roots.collect(),
         )?,
         provenance: Provenance {
@@ -108,29 +162,26 @@ fn exemplar(
             end_secs: meta.end_secs,
             blake3: meta.blake3,
         },
+        adverbs: meta.adverbs,
     })
 }
 
 fn file_of(vocabulary: &Vocabulary) -> VocabularyFile {
     let primitives = vocabulary.primitives();
-    let exemplars = primitives.iter().flat_map(|p| &p.exemplars);
     let transitions = vocabulary.transitions();
     let pairs = (0..transitions.n).flat_map(|from| (0..transitions.n).map(move |to| (from, to)));
     VocabularyFile {
-        exemplars: exemplars.map(|e| frames_of(&e.motion)).collect(),
+        exemplars: primitives.iter().flat_map(exemplar_tensors).collect(),
+        fits: primitives
+            .iter()
+            .map(|p| FitTensors::of(p.fitted()))
+            .collect(),
         meta: VocabularyMeta {
             program: concat!("kineme ", env!("CARGO_PKG_VERSION")).into(),
             body: vocabulary.body().name().into(),
             coordinates: vocabulary.body().coordinate_names(),
-            primitives: primitives
-                .iter()
-                .map(|p| PrimitiveMeta {
-                    name: p.name.clone(),
-                    members: p.members as u64,
-                    coherence: p.coherence,
-                    exemplars: p.exemplars.iter().map(exemplar_meta).collect(),
-                })
-                .collect(),
+            landmarks: landmark_dims(vocabulary.body()) as u64,
+            primitives: primitives.iter().map(primitive_meta).collect(),
             behaviors: vocabulary
                 .behaviors()
                 .iter()
@@ -141,8 +192,8 @@ fn file_of(vocabulary: &Vocabulary) -> VocabularyFile {
                 .collect(),
             transitions: pairs
                 .map(|(from, to)| TransitionMeta {
-                    from: primitives[from].name.clone(),
-                    to: primitives[to].name.clone(),
+                    from: primitives[from].name().into(),
+                    to: primitives[to].name().into(),
                     count: transitions.count(from, to),
                 })
                 .filter(|t| t.count > 0)
@@ -151,24 +202,41 @@ fn file_of(vocabulary: &Vocabulary) -> VocabularyFile {
     }
 }
 
-fn exemplar_meta(exemplar: &Exemplar) -> ExemplarMeta {
-    let from = &exemplar.provenance;
-    ExemplarMeta {
-        motion: from.motion.clone(),
-        start_secs: from.start_secs,
-        end_secs: from.end_secs,
-        rate_hz: exemplar.motion.rate_hz(),
-        blake3: from.blake3.clone(),
+fn primitive_meta(primitive: &Primitive) -> PrimitiveMeta {
+    let fit = primitive.fitted();
+    let exemplars = primitive.exemplars().iter().zip(&fit.used);
+    PrimitiveMeta {
+        name: primitive.name().into(),
+        group: primitive.group().map(|g| GroupMeta {
+            members: g.members as u64,
+            coherence: g.coherence,
+        }),
+        fit: fit.into(),
+        exemplars: exemplars
+            .map(|(e, used)| ExemplarMeta {
+                motion: e.provenance.motion.clone(),
+                start_secs: e.provenance.start_secs,
+                end_secs: e.provenance.end_secs,
+                rate_hz: e.motion.rate_hz(),
+                blake3: e.provenance.blake3.clone(),
+                adverbs: e.adverbs.clone(),
+                used: [used.start, used.end],
+                shift: used.shift,
+            })
+            .collect(),
     }
 }
 
-fn frames_of(motion: &Motion) -> ExemplarFrames {
-    ExemplarFrames {
-        poses: motion.poses().to_vec(),
-        root: motion
-            .roots()
-            .iter()
-            .map(|r| [r.position.x, r.position.y, r.position.z, r.yaw])
-            .collect(),
-    }
+fn exemplar_tensors(primitive: &Primitive) -> impl Iterator<Item = ExemplarTensors> + '_ {
+    let warps = primitive.fitted().warps.iter();
+    primitive.exemplars().iter().zip(warps).map(|(e, warp)| {
+        let roots = e.motion.roots().iter();
+        ExemplarTensors {
+            poses: e.motion.poses().to_vec(),
+            root: roots
+                .map(|r| [r.position.x, r.position.y, r.position.z, r.yaw])
+                .collect(),
+            warp: warp.places().to_vec(),
+        }
+    })
 }

@@ -1,14 +1,17 @@
 //! The vocabulary file as a safetensors container: bytes out, bytes in.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use safetensors::tensor::Metadata;
 use safetensors::{Dtype, SafeTensors, View};
 use serde::{Deserialize, Serialize};
 
 use super::check::Flaw;
-use super::{ExemplarFrames, VERSION, VocabularyFile, VocabularyMeta};
+use super::{
+    ExemplarTensors, FitTensors, PrimitiveMeta, PrincipalTensors, SourceMeta, VERSION,
+    VocabularyFile, VocabularyMeta,
+};
 use crate::error::{FormatError, Place, Result};
 
 /// The key of the document in the container's metadata.
@@ -49,21 +52,10 @@ impl VocabularyFile {
     /// When the vocabulary breaks a rule that [`Self::parse`] checks.
     pub fn write(&self, name: &str) -> Result<Vec<u8>> {
         self.check().map_err(|flaw| refusal(name, flaw))?;
-        let dof = self.meta.coordinates.len();
-        let tensors: Vec<(String, Tensor)> = self
-            .exemplars
-            .iter()
-            .enumerate()
-            .flat_map(|(i, e)| {
-                let frames = e.root.len();
-                let poses = Tensor::new([frames, dof], e.poses.iter());
-                let root = Tensor::new([frames, 4], e.root.iter().flatten());
-                [(tensor_name(i, POSES), poses), (tensor_name(i, ROOT), root)]
-            })
-            .collect();
+        let tensors = self.tensors();
         // The container sorts tensors of one type by name, which is the order they already have.
         let mut hasher = blake3::Hasher::new();
-        for (_, tensor) in &tensors {
+        for tensor in tensors.values() {
             hasher.update(&tensor.bytes);
         }
         let document = Document {
@@ -89,6 +81,34 @@ impl VocabularyFile {
             .and_then(|file| file.check().map(|()| file))
             .map_err(|flaw| refusal(name, flaw))
     }
+
+    fn tensors(&self) -> BTreeMap<String, Tensor> {
+        let mut tensors = BTreeMap::new();
+        let dof = self.meta.coordinates.len();
+        for (i, e) in self.exemplars.iter().enumerate() {
+            let frames = e.root.len();
+            let name = |what| tensor_name(EXEMPLAR, i, what);
+            tensors.insert(name(POSES), Tensor::new(&[frames, dof], &e.poses));
+            tensors.insert(name(ROOT), Tensor::new(&[frames, 4], e.root.as_flattened()));
+            tensors.insert(name(WARP), Tensor::new(&[e.warp.len()], &e.warp));
+        }
+        let landmarks = self.meta.landmarks as usize;
+        for (j, (fit, meta)) in self.fits.iter().zip(&self.meta.primitives).enumerate() {
+            let dims = meta.fit.parameters.len();
+            let points = Tensor::new(&[meta.exemplars.len(), dims], &fit.points);
+            let knots = fit.reference.len() / landmarks;
+            let reference = Tensor::new(&[knots, landmarks], &fit.reference);
+            let name = |what| tensor_name(PRIMITIVE, j, what);
+            tensors.insert(name(POINTS), points);
+            tensors.insert(name(REFERENCE), reference);
+            if let Some(PrincipalTensors { mean, directions }) = &fit.principal {
+                let length = mean.len();
+                tensors.insert(name(MEAN), Tensor::new(&[length], mean));
+                tensors.insert(name(DIRECTIONS), Tensor::new(&[dims, length], directions));
+            }
+        }
+        tensors
+    }
 }
 
 fn refusal(name: &str, (found, expected): Flaw) -> FormatError {
@@ -97,9 +117,9 @@ fn refusal(name: &str, (found, expected): Flaw) -> FormatError {
 
 /// What the container holds, its parts in agreement but not yet checked by themselves.
 fn read(bytes: &[u8]) -> std::result::Result<VocabularyFile, Flaw> {
-    let (header, container) = SafeTensors::read_metadata(bytes)
+    let (header, metadata) = SafeTensors::read_metadata(bytes)
         .map_err(|e| (e.to_string(), "a safetensors container".to_string()))?;
-    let json = container
+    let json = metadata
         .metadata()
         .as_ref()
         .and_then(|m| m.get(KEY))
@@ -116,41 +136,53 @@ fn read(bytes: &[u8]) -> std::result::Result<VocabularyFile, Flaw> {
         let found = "tensors whose BLAKE3 differs from `data_blake3`".to_string();
         return Err((found, "an undamaged file".to_string()));
     }
-    let count = meta.exemplar_count();
-    let tensors = container.offset_keys().len();
-    if tensors != 2 * count {
-        let found = format!("{tensors} tensors for {count} exemplars");
-        return Err((found, "two an exemplar".to_string()));
+    let principal = |p: &&PrimitiveMeta| p.fit.source == SourceMeta::Principal;
+    let expected = 3 * meta.exemplar_count()
+        + 2 * meta.primitives.len()
+        + 2 * meta.primitives.iter().filter(principal).count();
+    let tensors = metadata.offset_keys().len();
+    if tensors != expected {
+        let expected = format!("{expected} for the exemplars and primitives listed");
+        return Err((format!("{tensors} tensors"), expected));
     }
-    let exemplars = (0..count)
-        .map(|i| {
-            let width = meta.coordinates.len();
-            let poses = read_tensor(&container, data, &tensor_name(i, POSES), width)?;
-            let root = read_tensor(&container, data, &tensor_name(i, ROOT), 4)?;
-            let root = root.as_chunks::<4>().0.to_vec();
-            Ok(ExemplarFrames { poses, root })
-        })
-        .collect::<std::result::Result<_, Flaw>>()?;
-    Ok(VocabularyFile { meta, exemplars })
+    let container = Container { metadata, data };
+    let exemplars = (0..meta.exemplar_count()).map(|i| container.exemplar(i, &meta));
+    let exemplars = exemplars.collect::<std::result::Result<_, _>>()?;
+    let fits = meta.primitives.iter().enumerate();
+    let fits = fits.map(|(j, primitive)| container.fit(j, primitive, meta.landmarks as usize));
+    Ok(VocabularyFile {
+        exemplars,
+        fits: fits.collect::<std::result::Result<_, _>>()?,
+        meta,
+    })
 }
 
+const EXEMPLAR: &str = "exemplar";
 const POSES: &str = "poses";
 const ROOT: &str = "root";
+const WARP: &str = "warp";
+const PRIMITIVE: &str = "primitive";
+const POINTS: &str = "points";
+const REFERENCE: &str = "reference";
+const MEAN: &str = "mean";
+const DIRECTIONS: &str = "directions";
 
-fn tensor_name(exemplar: usize, what: &str) -> String {
-    format!("exemplar-{exemplar:06}/{what}")
+fn tensor_name(of: &str, index: usize, what: &str) -> String {
+    format!("{of}-{index:06}/{what}")
 }
 
-/// A matrix of f64 as the container takes it.
+/// Numbers as the container takes them.
 struct Tensor {
-    shape: [usize; 2],
+    shape: Vec<usize>,
     bytes: Vec<u8>,
 }
 
 impl Tensor {
-    fn new<'a>(shape: [usize; 2], values: impl Iterator<Item = &'a f64>) -> Self {
-        let bytes = values.flat_map(|v| v.to_le_bytes()).collect();
-        Self { shape, bytes }
+    fn new(shape: &[usize], values: &[f64]) -> Self {
+        Self {
+            shape: shape.to_vec(),
+            bytes: values.iter().flat_map(|v| v.to_le_bytes()).collect(),
+        }
     }
 }
 
@@ -180,10 +212,11 @@ fn read_document(json: &str) -> std::result::Result<Document<VocabularyMeta>, Fl
     let damaged = |e: serde_json::Error| (e.to_string(), "a vocabulary document".to_string());
     let Versioned { version } = serde_json::from_str(json).map_err(damaged)?;
     if version != VERSION {
-        return Err((
-            format!("format version {version}"),
-            format!("version {VERSION}, the only one this program reads"),
-        ));
+        let expected = match version {
+            1 => "version 2, which holds fitted primitives: make the vocabulary again".to_string(),
+            _ => format!("version {VERSION}, the only one this program reads"),
+        };
+        return Err((format!("format version {version}"), expected));
     }
     let document: Document<VocabularyMeta> = serde_json::from_str(json).map_err(damaged)?;
     if document.units != Units::ours() {
@@ -193,22 +226,69 @@ fn read_document(json: &str) -> std::result::Result<Document<VocabularyMeta>, Fl
     Ok(document)
 }
 
-fn read_tensor(
-    container: &Metadata,
-    data: &[u8],
-    name: &str,
-    width: usize,
-) -> std::result::Result<Vec<f64>, Flaw> {
-    let info = container
-        .info(name)
-        .ok_or_else(|| (format!("no tensor `{name}`"), "two an exemplar".to_string()))?;
-    if info.dtype != Dtype::F64 || info.shape.len() != 2 || info.shape[1] != width {
-        return Err((
-            format!("tensor `{name}` of {:?} {:?}", info.dtype, info.shape),
-            format!("F64 [frames, {width}]"),
-        ));
+/// A container whose tensors lie within its data.
+struct Container<'a> {
+    metadata: Metadata,
+    data: &'a [u8],
+}
+
+impl Container<'_> {
+    fn exemplar(
+        &self,
+        i: usize,
+        meta: &VocabularyMeta,
+    ) -> std::result::Result<ExemplarTensors, Flaw> {
+        let name = |what| tensor_name(EXEMPLAR, i, what);
+        let root = self.numbers(&name(ROOT), &[None, Some(4)])?;
+        Ok(ExemplarTensors {
+            poses: self.numbers(&name(POSES), &[None, Some(meta.coordinates.len())])?,
+            root: root.as_chunks::<4>().0.to_vec(),
+            warp: self.numbers(&name(WARP), &[None])?,
+        })
     }
-    let (start, end) = info.data_offsets;
-    let (numbers, _) = data[start..end].as_chunks::<8>();
-    Ok(numbers.iter().map(|b| f64::from_le_bytes(*b)).collect())
+
+    fn fit(
+        &self,
+        j: usize,
+        meta: &PrimitiveMeta,
+        landmarks: usize,
+    ) -> std::result::Result<FitTensors, Flaw> {
+        let name = |what| tensor_name(PRIMITIVE, j, what);
+        let dims = meta.fit.parameters.len();
+        let principal = if meta.fit.source == SourceMeta::Principal {
+            let mean = self.numbers(&name(MEAN), &[None])?;
+            let shape = [Some(dims), Some(mean.len())];
+            let directions = self.numbers(&name(DIRECTIONS), &shape)?;
+            Some(PrincipalTensors { mean, directions })
+        } else {
+            None
+        };
+        Ok(FitTensors {
+            points: self.numbers(&name(POINTS), &[Some(meta.exemplars.len()), Some(dims)])?,
+            reference: self.numbers(&name(REFERENCE), &[None, Some(landmarks)])?,
+            principal,
+        })
+    }
+
+    /// The numbers of a tensor of this shape; `None` is any number of rows.
+    fn numbers(&self, name: &str, shape: &[Option<usize>]) -> std::result::Result<Vec<f64>, Flaw> {
+        let expected = || {
+            let length = |n: &Option<usize>| n.map_or("any".to_string(), |n| n.to_string());
+            let shape: Vec<String> = shape.iter().map(length).collect();
+            format!("F64 [{}]", shape.join(", "))
+        };
+        let info = self
+            .metadata
+            .info(name)
+            .ok_or_else(|| (format!("no tensor `{name}`"), expected()))?;
+        let fits = |(found, wanted): (&usize, &Option<usize>)| wanted.is_none_or(|w| w == *found);
+        let same_rank = info.shape.len() == shape.len();
+        if info.dtype != Dtype::F64 || !same_rank || !info.shape.iter().zip(shape).all(fits) {
+            let found = format!("tensor `{name}` of {:?} {:?}", info.dtype, info.shape);
+            return Err((found, expected()));
+        }
+        let (start, end) = info.data_offsets;
+        let (numbers, _) = self.data[start..end].as_chunks::<8>();
+        Ok(numbers.iter().map(|b| f64::from_le_bytes(*b)).collect())
+    }
 }

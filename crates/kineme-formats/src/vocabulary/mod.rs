@@ -1,20 +1,37 @@
 //! The vocabulary file `*.kineme`: a safetensors container.
 //!
 //! Its metadata holds one JSON document under the key `kineme`: version, units, checksum of the tensors, and
-//! the vocabulary as [`VocabularyMeta`]. Exemplar `i`, counted through the primitives in order, has two f64
-//! tensors: `exemplar-<i, six digits>/poses` (frames x coordinates, radians) and `.../root` (frames x 4:
-//! x, y, z in metres, z up, and yaw in radians).
+//! the vocabulary as [`VocabularyMeta`]. Everything long stands in tensors of little-endian f64, those of exemplar `i`
+//! and of primitive `j`, both counted from 0 through the whole vocabulary in order, under six digits:
+//!
+//! | tensor | shape | holds |
+//! | --- | --- | --- |
+//! | `exemplar-<i>/poses` | frames x coordinates | joint coordinates, radians |
+//! | `exemplar-<i>/root` | frames x 4 | x, y, z in metres, z up, and yaw in radians |
+//! | `exemplar-<i>/warp` | knots | places in the part used, 0 to 1, at evenly spaced phases |
+//! | `primitive-<j>/points` | exemplars x parameters | the exemplars' parameters, in the unit cube |
+//! | `primitive-<j>/reference` | knots x landmarks | registered mean landmarks, metres |
+//! | `primitive-<j>/mean`, `primitive-<j>/directions` | length; parameters x length | where parameters are principal coordinates: the mean shape and one direction a parameter |
+//!
+//! With the exemplars these numbers are the primitive: nothing is fitted when a file is read, and what is read and
+//! written again has the same bytes. A Python program has them by
+//! `safetensors.numpy.load_file("moves.kineme")`, the document by
+//! `json.loads(safetensors.safe_open("moves.kineme", "numpy").metadata()["kineme"])`.
 
 mod bind;
 mod check;
 mod container;
+mod fit;
 
 pub use bind::{read, write};
+pub use fit::{
+    ErrorMeta, FitMeta, KernelMeta, MethodMeta, ParameterMeta, SourceMeta, TailMeta, TrialMeta,
+};
 
 use serde::{Deserialize, Serialize};
 
 /// The version of the document that this program writes, and the only one it reads.
-pub const VERSION: u64 = 1;
+pub const VERSION: u64 = 2;
 
 /// The most exemplars a file may hold: the six digits of a tensor's name.
 pub const MAX_EXEMPLARS: usize = 1_000_000;
@@ -22,19 +39,43 @@ pub const MAX_EXEMPLARS: usize = 1_000_000;
 /// What a vocabulary file holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VocabularyFile {
-    /// Everything but the movements.
+    /// Everything but long rows of numbers.
     pub meta: VocabularyMeta,
     /// The movements, in the order of the exemplars in [`VocabularyMeta::primitives`].
-    pub exemplars: Vec<ExemplarFrames>,
+    pub exemplars: Vec<ExemplarTensors>,
+    /// What was fitted, in the order of [`VocabularyMeta::primitives`].
+    pub fits: Vec<FitTensors>,
 }
 
 /// The movement of one exemplar.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ExemplarFrames {
+pub struct ExemplarTensors {
     /// Joint coordinates, radians, frame-major: `poses[frame * coordinates + coordinate]`.
     pub poses: Vec<f64>,
     /// The root's path, one a frame: x, y, z in metres (z up) and yaw in radians.
     pub root: Vec<[f64; 4]>,
+    /// Places in the part used, from 0 to 1, at evenly spaced phases.
+    pub warp: Vec<f64>,
+}
+
+/// The long rows of numbers of one primitive's fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FitTensors {
+    /// The exemplars' parameters in the unit cube: `points[exemplar * parameters + parameter]`.
+    pub points: Vec<f64>,
+    /// Registered mean landmarks, metres: `reference[knot * landmarks + landmark]`.
+    pub reference: Vec<f64>,
+    /// The transform to principal coordinates, where they are the parameters.
+    pub principal: Option<PrincipalTensors>,
+}
+
+/// The transform from shape to principal coordinates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PrincipalTensors {
+    /// The mean shape, metres.
+    pub mean: Vec<f64>,
+    /// A direction a parameter: `directions[parameter * mean.len() + i]`.
+    pub directions: Vec<f64>,
 }
 
 /// The body, the primitives and what is known of their origin.
@@ -47,6 +88,8 @@ pub struct VocabularyMeta {
     pub body: String,
     /// The names of the body's joint coordinates, in the order of a pose.
     pub coordinates: Vec<String>,
+    /// How many numbers the body's landmarks are.
+    pub landmarks: u64,
     /// The primitives, at least one, each name once.
     pub primitives: Vec<PrimitiveMeta>,
     /// The second level: primitives that belong together.
@@ -61,15 +104,25 @@ pub struct VocabularyMeta {
 pub struct PrimitiveMeta {
     /// Its name.
     pub name: String,
-    /// How many segments its group had, of which the exemplars are some.
-    pub members: u64,
-    /// How well its exemplars cohere; `None` where it was not measured.
-    pub coherence: Option<f64>,
+    /// What the derivation knew of its group; `None` where a person determined it.
+    pub group: Option<GroupMeta>,
+    /// What was fitted.
+    pub fit: FitMeta,
     /// Its exemplars, at least one.
     pub exemplars: Vec<ExemplarMeta>,
 }
 
-/// Where an exemplar comes from.
+/// The group that a primitive was derived from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GroupMeta {
+    /// How many segments it had, of which the exemplars are some.
+    pub members: u64,
+    /// How well they cohere; `None` where it was not measured.
+    pub coherence: Option<f64>,
+}
+
+/// Where an exemplar comes from, and what of it is used.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExemplarMeta {
@@ -83,6 +136,12 @@ pub struct ExemplarMeta {
     pub rate_hz: f64,
     /// BLAKE3 of the source file, 64 lower-case hexadecimal digits, where it is known.
     pub blake3: Option<String>,
+    /// What a person said of it, in the adverbs' own units.
+    pub adverbs: Option<Vec<f64>>,
+    /// The first frame and the last that are used, not always whole.
+    pub used: [f64; 2],
+    /// Where in that part phase 0 is, as a share of it, in [0, 1): 0 but for cycles read round their end.
+    pub shift: f64,
 }
 
 /// Primitives that belong together because they follow one another.

@@ -2,7 +2,7 @@
 
 use kineme_formats::tables::{angles, msr, positions};
 use kineme_formats::vocabulary::VocabularyFile;
-use kineme_formats::{marks, profile, script};
+use kineme_formats::{manifest, marks, profile, script, vocabulary};
 use proptest::prelude::*;
 
 /// Feeds the bytes to every reader.
@@ -11,6 +11,7 @@ fn read_by_all(bytes: &[u8]) {
     let _ = msr::parse("a", bytes, None);
     let _ = marks::parse("a", bytes);
     let _ = profile::parse("a", bytes);
+    let _ = manifest::parse("a", bytes);
     if let Ok(table) = angles::parse("a", bytes) {
         let again = angles::parse("a", &table.write("a").unwrap()).unwrap();
         assert_eq!(again, table);
@@ -22,6 +23,7 @@ fn read_by_all(bytes: &[u8]) {
         let again = VocabularyFile::parse("a", &file.write("a").unwrap()).unwrap();
         assert_eq!(again, file);
     }
+    let _ = vocabulary::read("a", bytes);
     let _ = (
         msr::sniff(bytes),
         positions::sniff(bytes),
@@ -35,6 +37,7 @@ fn whole_files() -> Vec<Vec<u8>> {
         "frame,head_x,head_y,head_z,a_x,a_y,a_z\n0,1,2,3,4,5,6\n1,1,2,3,,,\n5,1,2,3,4,5,6\n",
         "time,root_x,root_y,root_z,root_yaw,a\n0,1,2,3,4,5\n0.5,,2,3,4,1e-9\n",
         "file,start,end,recording\na.bvh,0,1,r\n\"b,c\",0.5,1,\n",
+        "file,label,start,end,rate,p1,p2\na.bvh,wave,0,1,120,0.5,1\n\"b,c\",,,,,,\n",
         "name = 'p'\nup = 'y'\nunit_metres = 0.01\n[roles]\nhips = 'H'\nhead = ['a', 'b']\n",
         "body = 'a'\n[[exemplar]]\nprimitive = 'p'\nparameters = { h = 1 }\n\
          keys = [{ time = 0 }, { time = 0.5, chest = [1, 2, 3] }]\n",
@@ -79,7 +82,7 @@ proptest! {
 
     #[test]
     fn mutations_are_read_or_refused(
-        which in 0..7usize,
+        which in 0..8usize,
         edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4u8), 1..6),
     ) {
         let mut bytes = whole_files()[which].clone();

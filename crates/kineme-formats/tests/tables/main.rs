@@ -3,7 +3,10 @@
 mod angles;
 mod body_angles;
 mod hostile;
+mod learned;
+mod manifest;
 mod msr;
+mod npz;
 mod positions;
 mod real_data;
 mod vocabulary;

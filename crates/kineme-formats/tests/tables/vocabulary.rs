@@ -1,7 +1,8 @@
 use kineme_formats::Place;
 use kineme_formats::vocabulary::{
-    BehaviorMeta, ExemplarFrames, ExemplarMeta, PrimitiveMeta, TransitionMeta, VocabularyFile,
-    VocabularyMeta,
+    BehaviorMeta, ErrorMeta, ExemplarMeta, ExemplarTensors, FitMeta, FitTensors, GroupMeta,
+    KernelMeta, MethodMeta, ParameterMeta, PrimitiveMeta, PrincipalTensors, SourceMeta, TailMeta,
+    TransitionMeta, TrialMeta, VocabularyFile, VocabularyMeta,
 };
 
 use crate::refused;
@@ -13,29 +14,77 @@ fn exemplar(motion: &str, start: f64) -> ExemplarMeta {
         end_secs: start + 0.7,
         rate_hz: 60.0,
         blake3: Some("0af1".repeat(16)),
+        adverbs: Some(vec![0.1 + 0.2, -0.0]),
+        used: [0.0, 4.0 / 3.0],
+        shift: 0.25,
     }
 }
 
-fn frames(n: usize, seed: f64) -> ExemplarFrames {
-    ExemplarFrames {
+fn movement(n: usize, seed: f64) -> ExemplarTensors {
+    ExemplarTensors {
         poses: (0..3 * n).map(|i| (seed + i as f64).sin()).collect(),
         root: (0..n)
             .map(|i| [i as f64 / 3.0, -0.0, 0.95, 1e-300])
             .collect(),
+        warp: vec![0.0, 1.0 / 3.0, 1.0],
     }
 }
 
-/// Two primitives with three exemplars of a body with three coordinates.
+fn fit(source: SourceMeta, parameters: &[&str]) -> FitMeta {
+    let method = MethodMeta::Cardinal {
+        kernel: KernelMeta::Wendland { support: 0.1 + 0.7 },
+        tail: TailMeta::LeastSquares,
+        nugget: 1e-3,
+    };
+    FitMeta {
+        cyclic: false,
+        knots: 64,
+        parameters: parameters
+            .iter()
+            .map(|name| ParameterMeta {
+                name: name.to_string(),
+                low: -1.0 / 7.0,
+                high: 2.0,
+            })
+            .collect(),
+        source,
+        method,
+        trials: vec![TrialMeta {
+            method,
+            parameters: 2,
+            error_m: 0.1 + 0.2,
+        }],
+        error: Some(ErrorMeta {
+            joint_rad: 0.1,
+            wrist_m: 0.2,
+            nearest_m: 0.3,
+            mean_m: 1e-300,
+        }),
+        notes: vec!["\"so\"".to_string()],
+    }
+}
+
+/// Two primitives with three exemplars of a body with three coordinates: one of two adverbs, one of no parameters.
 pub fn example() -> VocabularyFile {
-    let primitive = |name: &str, coherence, exemplars| PrimitiveMeta {
+    let primitive = |name: &str, group, fit, exemplars| PrimitiveMeta {
         name: name.to_string(),
-        members: 7,
-        coherence,
+        group,
+        fit,
         exemplars,
+    };
+    let group = GroupMeta {
+        members: 7,
+        coherence: Some(0.1 + 0.7),
     };
     let unknown_source = ExemplarMeta {
         blake3: None,
+        adverbs: None,
         ..exemplar("b.bvh", 0.1)
+    };
+    let tensors = |points: &[f64], principal| FitTensors {
+        points: points.to_vec(),
+        reference: vec![0.5, -0.0, 1.0 / 3.0, 2.0],
+        principal,
     };
     VocabularyFile {
         meta: VocabularyMeta {
@@ -44,16 +93,27 @@ pub fn example() -> VocabularyFile {
             coordinates: ["neck_x", "neck_y", "left_elbow"]
                 .map(String::from)
                 .to_vec(),
+            landmarks: 2,
             primitives: vec![
                 primitive(
                     "group-01",
-                    Some(0.1 + 0.7),
+                    Some(group),
+                    fit(SourceMeta::Adverbs, &["height", "side"]),
                     vec![
                         exemplar("set.zip/a.bvh", 0.0),
                         exemplar("set.zip/a.bvh", 1.0 / 3.0),
                     ],
                 ),
-                primitive("wave / \"out\"", None, vec![unknown_source]),
+                primitive(
+                    "wave / \"out\"",
+                    None,
+                    FitMeta {
+                        method: MethodMeta::Shepard { power: 2.0 },
+                        error: None,
+                        ..fit(SourceMeta::Principal, &[])
+                    },
+                    vec![unknown_source],
+                ),
             ],
             behaviors: vec![BehaviorMeta {
                 name: "behavior-01".to_string(),
@@ -65,7 +125,17 @@ pub fn example() -> VocabularyFile {
                 count: 4,
             }],
         },
-        exemplars: vec![frames(4, 0.0), frames(1, 0.5), frames(2, 7.0)],
+        exemplars: vec![movement(4, 0.0), movement(1, 0.5), movement(2, 7.0)],
+        fits: vec![
+            tensors(&[0.0, 1.0, 1.0 / 3.0, -0.0], None),
+            tensors(
+                &[],
+                Some(PrincipalTensors {
+                    mean: vec![1.0, 2.0, 3.0],
+                    directions: Vec::new(),
+                }),
+            ),
+        ],
     }
 }
 
@@ -76,6 +146,9 @@ fn a_vocabulary_survives_bit_for_bit() {
     let back = VocabularyFile::parse("v.kineme", &bytes).unwrap();
     assert_eq!(back, file);
     assert!(back.exemplars[0].root[0][1].is_sign_negative());
+    assert!(back.fits[0].points[3].is_sign_negative());
+    let adverbs = back.meta.primitives[0].exemplars[0].adverbs.as_ref();
+    assert!(adverbs.unwrap()[1].is_sign_negative());
     assert_eq!(back.write("v.kineme").unwrap(), bytes);
     assert_eq!(file.write("other").unwrap(), bytes);
 }
@@ -122,7 +195,7 @@ fn invalid_vocabularies_are_not_written() {
         ),
         (
             "no frame",
-            |v| v.exemplars[1] = frames(0, 0.0),
+            |v| v.exemplars[1] = movement(0, 0.0),
             "exemplar 1 with 0 numbers",
         ),
         (
@@ -132,7 +205,7 @@ fn invalid_vocabularies_are_not_written() {
         ),
         (
             "coherence",
-            |v| v.meta.primitives[0].coherence = Some(f64::NAN),
+            |v| v.meta.primitives[0].group.as_mut().unwrap().coherence = Some(f64::NAN),
             "coherence",
         ),
         (
@@ -154,6 +227,88 @@ fn invalid_vocabularies_are_not_written() {
             "hash",
             |v| v.meta.primitives[0].exemplars[1].blake3 = Some("AB".to_string()),
             "blake3",
+        ),
+        ("no landmarks", |v| v.meta.landmarks = 0, "no landmarks"),
+        ("fit lost", |v| drop(v.fits.pop()), "fits of 1"),
+        (
+            "warp not finite",
+            |v| v.exemplars[0].warp[1] = f64::NAN,
+            "exemplar 0",
+        ),
+        (
+            "part used",
+            |v| v.meta.primitives[0].exemplars[0].used[1] = f64::INFINITY,
+            "frames 0 to inf",
+        ),
+        (
+            "no part",
+            |v| v.meta.primitives[0].exemplars[0].used[1] = 0.5,
+            "frames 0 to 0.5",
+        ),
+        (
+            "adverb",
+            |v| v.meta.primitives[0].exemplars[0].adverbs = Some(vec![f64::NAN]),
+            "adverbs",
+        ),
+        (
+            "parameter",
+            |v| v.meta.primitives[0].fit.parameters[1].high = f64::INFINITY,
+            "parameters",
+        ),
+        (
+            "parameter lost",
+            |v| drop(v.meta.primitives[0].fit.parameters.pop()),
+            "4 parameters of primitive `group-01`",
+        ),
+        (
+            "point",
+            |v| v.fits[0].points[0] = f64::NAN,
+            "parameters of primitive",
+        ),
+        (
+            "reference cut",
+            |v| v.fits[0].reference.truncate(3),
+            "3 reference numbers",
+        ),
+        (
+            "reference",
+            |v| v.fits[1].reference[0] = f64::NAN,
+            "reference of primitive",
+        ),
+        (
+            "method",
+            |v| v.meta.primitives[1].fit.method = MethodMeta::Shepard { power: f64::NAN },
+            "method",
+        ),
+        (
+            "trial",
+            |v| v.meta.primitives[0].fit.trials[0].error_m = f64::INFINITY,
+            "trials",
+        ),
+        (
+            "error",
+            |v| v.meta.primitives[0].fit.error.as_mut().unwrap().wrist_m = f64::NAN,
+            "error",
+        ),
+        (
+            "no transform",
+            |v| v.fits[1].principal = None,
+            "no transform",
+        ),
+        (
+            "a transform",
+            |v| v.meta.primitives[1].fit.source = SourceMeta::Adverbs,
+            "a transform",
+        ),
+        (
+            "direction",
+            |v| v.fits[1].principal.as_mut().unwrap().directions.push(1.0),
+            "1 direction numbers",
+        ),
+        (
+            "mean",
+            |v| v.fits[1].principal.as_mut().unwrap().mean[0] = f64::NAN,
+            "principal coordinates",
         ),
         (
             "group",
@@ -238,10 +393,15 @@ fn damaged_files_are_refused() {
         ),
         (
             "newer",
-            rewritten("\\\"version\\\":1", "\\\"version\\\":2"),
-            "format version 2",
+            rewritten("\\\"version\\\":2", "\\\"version\\\":3"),
+            "format version 3",
         ),
-        ("no version", rewritten("\\\"version\\\":1,", ""), "version"),
+        (
+            "older",
+            rewritten("\\\"version\\\":2", "\\\"version\\\":1"),
+            "format version 1",
+        ),
+        ("no version", rewritten("\\\"version\\\":2,", ""), "version"),
         ("degrees", rewritten("\\\"rad\\\"", "\\\"deg\\\""), "units"),
         (
             "new field",
@@ -252,6 +412,34 @@ fn damaged_files_are_refused() {
             "tensor name",
             rewritten("exemplar-000001/root", "exemplar-000009/root"),
             "no tensor",
+        ),
+        (
+            "fit's tensor name",
+            rewritten("primitive-000001/mean", "primitive-000001/moan"),
+            "no tensor",
+        ),
+        (
+            "method",
+            rewritten("\\\"shepard\\\"", "\\\"sheperd\\\""),
+            "unknown variant `sheperd`",
+        ),
+        (
+            "parameters without points",
+            rewritten(
+                "points\":{\"dtype\":\"F64\",\"shape\":[2,2]",
+                "points\":{\"dtype\":\"F64\",\"shape\":[4,1]",
+            ),
+            "F64 [4, 1]",
+        ),
+        (
+            "transform without tensors",
+            rewritten("\\\"adverbs\\\",", "\\\"principal\\\","),
+            "15 tensors",
+        ),
+        (
+            "rank",
+            rewritten("\"shape\":[3]", "\"shape\":[3,1]"),
+            "F64 [3, 1]",
         ),
         ("shape", rewritten("[4,3]", "[3,4]"), "F64 [3, 4]"),
         ("type", rewritten("F64", "I64"), "I64"),
@@ -276,95 +464,4 @@ fn damaged_files_are_refused() {
         let error = VocabularyFile::parse("v.kineme", bytes).expect_err(what);
         refused(what, &error, Place::File, word);
     }
-}
-
-/// Two primitives of Adonis with numbers that rounding would show.
-fn vocabulary() -> kineme::Vocabulary {
-    use kineme::{Behavior, Exemplar, Motion, Primitive, Provenance, Root, Transitions};
-
-    let body = std::sync::Arc::new(kineme::adonis().unwrap());
-    let exemplar = |name: &str, frames: usize| {
-        let roots = (0..frames).map(|f| Root {
-            position: [f as f64 / 3.0, -0.0, 1e-300].into(),
-            yaw: 7.0 / 9.0,
-        });
-        let poses = (0..20 * frames).map(|i| (i as f64).sin()).collect();
-        let body = std::sync::Arc::clone(&body);
-        Exemplar {
-            motion: Motion::new(name, body, 1.0 / 0.0333333, poses, roots.collect()).unwrap(),
-            provenance: Provenance {
-                motion: name.to_string(),
-                start_secs: 0.1,
-                end_secs: 0.1 + 0.2,
-                blake3: (frames > 1).then(|| "0f".repeat(32)),
-            },
-        }
-    };
-    let primitive = |name: &str, coherence, exemplars: Vec<Exemplar>| Primitive {
-        name: name.to_string(),
-        members: exemplars.len() + 3,
-        exemplars,
-        coherence,
-    };
-    let (out, back) = ("out", "back");
-    kineme::Vocabulary::new(
-        std::sync::Arc::clone(&body),
-        vec![
-            primitive(
-                out,
-                Some(0.1 + 0.7),
-                vec![exemplar("a.bvh", 4), exemplar("b.bvh", 1)],
-            ),
-            primitive(back, None, vec![exemplar("set.zip/a.bvh", 2)]),
-        ],
-        vec![Behavior {
-            name: "wave".to_string(),
-            primitives: vec![out.to_string(), back.to_string()],
-        }],
-        Transitions {
-            counts: vec![0, 5, 2, u32::MAX],
-            n: 2,
-        },
-    )
-    .unwrap()
-}
-
-#[test]
-fn the_librarys_vocabulary_comes_back_bit_for_bit() {
-    let vocabulary = vocabulary();
-    let bytes = kineme_formats::vocabulary::write(&vocabulary, "v").unwrap();
-    let back = kineme_formats::vocabulary::read("v", &bytes).unwrap();
-    assert_eq!(back, vocabulary);
-    let bits = |v: &kineme::Vocabulary| -> Vec<u64> {
-        let motions = v.primitives().iter().flat_map(|p| &p.exemplars);
-        motions
-            .flat_map(|e| {
-                e.motion
-                    .poses()
-                    .iter()
-                    .chain(e.motion.root(0).position.iter())
-            })
-            .map(|x| x.to_bits())
-            .collect()
-    };
-    assert_eq!(bits(&back), bits(&vocabulary));
-    assert_eq!(
-        kineme_formats::vocabulary::write(&back, "v").unwrap(),
-        bytes
-    );
-}
-
-#[test]
-fn vocabularies_of_unknown_bodies_are_refused() {
-    let error = kineme_formats::vocabulary::read("v", &example().write("v").unwrap());
-    refused(
-        "coordinates",
-        &error.unwrap_err(),
-        Place::File,
-        "3 coordinates",
-    );
-    let mut stranger = example();
-    stranger.meta.body = "atlas".to_string();
-    let error = kineme_formats::vocabulary::read("v", &stranger.write("v").unwrap());
-    refused("body", &error.unwrap_err(), Place::File, "`atlas`");
 }

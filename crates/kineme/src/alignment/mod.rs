@@ -7,22 +7,28 @@
 //! [`resting_ends`] cuts rests off, [`Registration`] gives every exemplar of a group a [`Warp`] from the common phase
 //! to its own time, along paths of limited slope ([`align_sloped`]).
 
+mod cycle;
 mod dtw;
 mod lanes;
 mod nearest;
 mod pairs;
+mod period;
 mod registration;
 mod slope;
 mod smooth;
+mod structure;
 mod trim;
 mod warp;
 
+pub use cycle::{Cycle, cycle, cycles};
 pub use dtw::{Alignment, Band, LocalCost, align, distance};
 pub use nearest::{
     Nearest, NeighbourLists, Reached, RecallGoal, nearest_neighbours, nearest_to_recall, recall,
 };
 pub use pairs::{Sequences, distances_to_query, pair_distances};
+pub use period::{Period, period};
 pub use registration::{Aligned, Registered, Registration};
 pub use slope::align_sloped;
+pub use structure::{Mismatch, Structure};
 pub use trim::{Trim, resting_ends};
 pub use warp::{Warp, resample};

@@ -381,7 +381,7 @@ fn joined(values: &[f64], rates: &[f64], dims: usize, scale: f64) -> Vec<f64> {
 }
 
 /// Sum of the squared distances of the frames from their mean.
-fn spread(values: &[f64], dims: usize) -> f64 {
+pub(super) fn spread(values: &[f64], dims: usize) -> f64 {
     let count = (values.len() / dims) as f64;
     let mut mean = vec![0.0; dims];
     for frame in values.chunks_exact(dims) {

@@ -14,8 +14,8 @@ const RIDGE: f64 = 1e-8;
 const ILL_CONDITIONED: f64 = 1e8;
 /// Rounds of iterative refinement.
 const REFINEMENTS: usize = 3;
-/// Residual up to which the exemplars count as met.
-const EXACT: f64 = 1e-10;
+/// Residual up to which a point is given to itself outright; the step beside it is of this size at most.
+const EXACT: f64 = 1e-6;
 
 /// Fitted cardinal functions of distinct points. A weight is `value_i + slopes_i (p - centre) + sum_k radial_ki R_k(p)`,
 /// and what the sum then lacks of one is given to all alike: rounding, or with no tail what the kernel leaves.
@@ -204,18 +204,18 @@ struct Solution {
 }
 
 fn note_quality(solution: &Solution, notes: &mut Vec<String>) {
-    if solution.condition > ILL_CONDITIONED {
+    if solution.ridge {
+        notes
+            .push("the kernel's matrix is singular to working precision: a ridge was added".into());
+    } else if solution.condition > ILL_CONDITIONED {
         notes.push(format!(
             "ill conditioned ({:.0e}): some points nearly coincide, or the kernel is too wide for them",
             solution.condition
         ));
     }
-    if solution.ridge {
-        notes.push("the kernel's matrix is singular to working precision: a ridge was added to factorise it".into());
-    }
     if solution.residual > EXACT {
         notes.push(format!(
-            "the weights at the points themselves are met to {:.0e} only",
+            "the exemplars are not met at their own parameters: their weights are off by up to {:.0e}",
             solution.residual
         ));
     }

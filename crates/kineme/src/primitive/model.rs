@@ -5,11 +5,12 @@ use std::sync::{Arc, OnceLock};
 use super::course::{Course, Sample, sample};
 use super::curve::Curve;
 use super::exemplar::Exemplar;
-use super::fitting::{SHAPE_PHASES, fit, part_of, shape};
-use super::modelling::{Fit, Modelling, Used};
+use super::fitting::{SHAPE_PHASES, fit, moving, part_of, shape};
+use super::modelling::{Fit, Modelling};
 use super::registered::curves;
 use super::space::{ParameterSource, ParameterSpace};
-use crate::alignment::{Registration, resting_ends};
+use super::structure::cycle_of;
+use crate::alignment::{Registration, Trim};
 use crate::error::{Error, Result};
 use crate::interpolation::Interpolator;
 use crate::motion::{Motion, landmark_dims};
@@ -93,7 +94,8 @@ impl Primitive {
         }
         for (e, used) in exemplars.iter().zip(&fit.used) {
             let last = (e.motion.frames() - 1) as f64;
-            if !(used.start >= 0.0 && used.end > used.start && used.end <= last) {
+            let within = used.start >= 0.0 && used.end > used.start && used.end <= last + 1e-9;
+            if !within || !(0.0..1.0).contains(&used.shift) {
                 return Err(wrong(format!(
                     "frames {} to {} of {}, which has {}",
                     used.start,
@@ -336,17 +338,19 @@ impl Primitive {
     fn shape_of(&self, motion: &Motion) -> Result<Vec<f64>> {
         let dims = landmark_dims(self.body());
         let seen = motion.landmarks();
-        let range = if self.fit.cyclic {
-            0..motion.frames()
+        let registration = Registration {
+            knots: self.fit.reference.len() / dims,
+            cyclic: self.fit.cyclic,
+            ..Registration::default()
+        };
+        let used = if self.fit.cyclic {
+            let secs = self.at(&self.middle())?.duration_secs();
+            cycle_of(&seen, dims, motion.rate_hz(), secs, &self.fit.reference)?
         } else {
-            resting_ends(&seen, dims, motion.rate_hz(), &Default::default())
+            moving(&seen, dims, motion.rate_hz(), &Trim::default())
         };
-        let used = Used {
-            start: range.start as f64,
-            end: (range.end - 1) as f64,
-        };
-        let sequence = part_of(&seen, dims, &used);
-        let aligned = Registration::default().register_to(&self.fit.reference, &sequence, dims)?;
+        let sequence = part_of(&seen, dims, &used, self.fit.cyclic);
+        let aligned = registration.register_to(&self.fit.reference, &sequence, dims)?;
         Ok(shape(&sequence, dims, &aligned.warp))
     }
 

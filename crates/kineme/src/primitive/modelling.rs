@@ -64,6 +64,21 @@ pub struct Used {
     pub start: f64,
     /// Last frame, after the first.
     pub end: f64,
+    /// Where in that part phase 0 is, as a share of it, in [0, 1): 0 but for cycles read round their end.
+    pub shift: f64,
+}
+
+impl Used {
+    /// The share of the part, in [0, 1], at a place: the place itself but for cycles read round their end.
+    pub fn share(&self, place: f64) -> f64 {
+        let share = place + self.shift;
+        if share > 1.0 { share - 1.0 } else { share }
+    }
+
+    /// The frame at a place in [0, 1].
+    pub fn frame(&self, place: f64) -> f64 {
+        self.start + (self.end - self.start) * self.share(place)
+    }
 }
 
 /// An interpolator that was tried: each exemplar predicted from the others.

@@ -22,7 +22,8 @@ pub(super) fn curves(exemplars: &[Exemplar], fit: &Fit) -> Vec<Curve> {
             first_poses = values[..channels].to_vec();
         }
         if fit.cyclic {
-            close(&mut values, channels);
+            let ends = ends(&exemplar.motion, used, &values[..channels]);
+            close(&mut values, &ends, used, warp);
         }
         curves.push(Curve::through(values, channels, fit.cyclic));
     }
@@ -37,7 +38,7 @@ fn knots(motion: &Motion, used: &Used, warp: &Warp, count: usize) -> Vec<f64> {
     let mut values = Vec::with_capacity(count * (dof + EXTRA));
     for k in 0..count {
         let phase = k as f64 / (count - 1) as f64;
-        let frame = used.start + length * warp.place(phase);
+        let frame = used.frame(warp.place(phase));
         pose_between(motion, frame, &mut values);
         values.extend(travel(motion, frame));
         values.push((warp.slope(phase) * length / rate).ln());
@@ -147,18 +148,31 @@ fn same_branch(values: &mut [f64], channels: usize, motion: &Motion, first: &[f6
     }
 }
 
-/// Spreads what is left open between the last and the first knot over the whole cycle.
-fn close(values: &mut [f64], channels: usize) {
+/// What a cycle leaves open: pose and travel at its end less those at its beginning; the pace closes by itself.
+fn ends(motion: &Motion, used: &Used, like: &[f64]) -> Vec<f64> {
+    let mut both = Vec::with_capacity(2 * like.len());
+    for frame in [used.start, used.end] {
+        pose_between(motion, frame, &mut both);
+        both.extend(travel(motion, frame));
+        both.push(0.0);
+    }
+    same_branch(&mut both, like.len(), motion, like);
+    let (start, end) = both.split_at(like.len());
+    start.iter().zip(end).map(|(a, b)| b - a).collect()
+}
+
+/// Spreads what is left open over the whole cycle, so that its last knot is its first.
+fn close(values: &mut [f64], gap: &[f64], used: &Used, warp: &Warp) {
+    let channels = gap.len();
     let knots = values.len() / channels;
-    let gap: Vec<f64> = (0..channels)
-        .map(|c| values[(knots - 1) * channels + c] - values[c])
-        .collect();
     for (k, row) in values.chunks_exact_mut(channels).enumerate() {
-        let share = k as f64 / (knots - 1) as f64 - 0.5;
-        for (v, g) in row.iter_mut().zip(&gap) {
+        let place = warp.place(k as f64 / (knots - 1) as f64).clamp(0.0, 1.0);
+        let share = used.share(place) - 0.5;
+        for (v, g) in row.iter_mut().zip(gap) {
             *v -= share * g;
         }
     }
+    // Rounding and the pace apart, they are equal already.
     let (start, end) = values.split_at_mut((knots - 1) * channels);
     end.copy_from_slice(&start[..channels]);
 }

@@ -1,26 +1,93 @@
 //! What kind of movement a group is: a stroke or a cycle, and which exemplars are of another kind.
 
 use super::exemplar::Exemplar;
-use super::modelling::{Modelling, Used};
-use crate::alignment::Registered;
+use super::fitting::Phased;
+use super::modelling::Used;
+use crate::alignment::{Cycle, Mismatch, Registration, cycle, cycles, period};
 use crate::error::Result;
+use crate::motion::{landmark_dims, mirror_landmarks};
 
-pub(super) fn cycles(
-    _name: &str,
-    _exemplars: &[Exemplar],
-    _landmarks: &[Vec<f64>],
-    trimmed: Vec<Used>,
-    modelling: &Modelling,
-    _notes: &mut Vec<String>,
-) -> Result<(bool, Vec<Used>)> {
-    Ok((modelling.cyclic.unwrap_or(false), trimmed))
+/// One cycle of each exemplar, all beginning at the same event; `None` for a group of strokes. `declared` says
+/// which it is, where somebody knows.
+pub(super) fn cycles_of(
+    exemplars: &[Exemplar],
+    landmarks: &[Vec<f64>],
+    declared: Option<bool>,
+) -> Result<Option<Vec<Used>>> {
+    let dims = landmark_dims(exemplars[0].motion.skeleton());
+    let borrowed: Vec<&[f64]> = landmarks.iter().map(Vec::as_slice).collect();
+    let rates: Vec<f64> = exemplars.iter().map(|e| e.motion.rate_hz()).collect();
+    let short = exemplars.iter().any(|e| e.motion.frames() < LEAST_FRAMES);
+    if short && declared != Some(true) {
+        return Ok(None);
+    }
+    let found = cycles(&borrowed, dims, &rates, declared)?;
+    Ok(found.map(|cycles| cycles.iter().map(used).collect()))
 }
 
-pub(super) fn mismatched(
-    _exemplars: &[Exemplar],
-    _sequences: &[Vec<f64>],
-    _registered: &Registered,
-    _cyclic: bool,
-) -> Vec<(usize, String)> {
-    Vec::new()
+/// Frames below which nothing can be said of repetition.
+const LEAST_FRAMES: usize = 4;
+
+/// A cycle of a further sequence in step with a reference cycle of so many seconds.
+pub(super) fn cycle_of(
+    sequence: &[f64],
+    dims: usize,
+    rate_hz: f64,
+    secs: f64,
+    reference: &[f64],
+) -> Result<Used> {
+    let own = period(sequence, dims, rate_hz)?.map_or(secs * rate_hz, |p| {
+        p.frames / (p.frames / (secs * rate_hz)).round().max(1.0)
+    });
+    Ok(used(&cycle(sequence, dims, own.max(2.0), Some(reference))?))
+}
+
+fn used(cycle: &Cycle) -> Used {
+    Used {
+        start: cycle.start,
+        end: cycle.start + cycle.frames,
+        shift: cycle.shift,
+    }
+}
+
+/// Exemplars of another structure than the others, and what is wrong with them; beside them what is only to be told.
+pub(super) struct Foreign {
+    pub refused: Vec<(usize, &'static str)>,
+    pub told: Vec<(usize, &'static str)>,
+}
+
+pub(super) fn foreign(
+    exemplars: &[Exemplar],
+    phased: &Phased,
+    registration: &Registration,
+) -> Result<Foreign> {
+    let mut foreign = Foreign {
+        refused: Vec::new(),
+        told: Vec::new(),
+    };
+    if exemplars.len() < 2 {
+        return Ok(foreign);
+    }
+    let body = exemplars[0].motion.skeleton();
+    let mirrored: Vec<Vec<f64>> = phased
+        .sequences
+        .iter()
+        .map(|s| mirror_landmarks(body, s))
+        .collect();
+    let borrowed: Vec<&[f64]> = phased.sequences.iter().map(Vec::as_slice).collect();
+    let images: Vec<&[f64]> = mirrored.iter().map(Vec::as_slice).collect();
+    let found = registration.structures(&borrowed, &images, landmark_dims(body))?;
+    for (i, (_, mismatch)) in found.into_iter().enumerate() {
+        match mismatch {
+            Some(Mismatch::Mirrored) => foreign
+                .refused
+                .push((i, "is the mirror image of the others")),
+            Some(Mismatch::OutOfStep) => foreign
+                .refused
+                .push((i, "begins with the other foot (half a cycle out of step)")),
+            Some(Mismatch::Outlier) => foreign.told.push((i, "is far from all others")),
+            None => {}
+        }
+    }
+    Ok(foreign)
 }

@@ -47,8 +47,9 @@ pub fn ares() -> Result<Skeleton> {
     let skull_share = 1.0 - neck_share(neck_height);
     let mut height = SACRUM;
     let regions: [(&str, usize, Role, f64, [f64; 3]); 3] = [
-        // Ranges of one vertebra (degrees, half of the region's range divided by its joints).
-        ("lumbar", 5, Role::Spine, 0.5, [11.0, 6.0, 3.0]),
+        // Ranges of one vertebra (degrees, half of the region's range divided by its joints). A lumbar vertebra turns
+        // by 3 in people, but here half of the trunk's turning of up to 60 is spread over five of them.
+        ("lumbar", 5, Role::Spine, 0.5, [11.0, 6.0, 6.0]),
         ("thoracic", 12, Role::Chest, 0.5, [5.0, 4.0, 5.0]),
         ("cervical", 7, Role::Neck, 0.6, [10.0, 7.0, 10.0]),
     ];

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::joint::{Joint, JointKind};
+use super::joint::{Joint, JointKind, Range};
+use super::limits::limits;
 use super::role::Role;
 use crate::error::{Error, Result};
 use crate::math::rotation::{exp, log, log_near};
@@ -30,6 +31,7 @@ pub struct Skeleton {
     joints: Vec<Joint>,
     first_coordinate: Vec<usize>,
     dof: usize,
+    limits: Vec<Vec<Range>>,
     effectors: Vec<Effector>,
 }
 
@@ -78,11 +80,13 @@ impl Skeleton {
                 first
             })
             .collect();
+        let limits = joints.iter().map(limits).collect();
         Ok(Self {
             name: name.into(),
             joints,
             first_coordinate,
             dof,
+            limits,
             effectors,
         })
     }
@@ -111,6 +115,16 @@ impl Skeleton {
     pub fn coordinates(&self, joint: usize) -> std::ops::Range<usize> {
         let first = self.first_coordinate[joint];
         first..first + self.joints[joint].kind.dof()
+    }
+
+    /// How far joint `joint` goes, radians: of a hinge the range of its angle; of a ball three ranges, of its rotation
+    /// vector along flexion, abduction and axial rotation; empty for a fixed joint and for the root, which has no limit.
+    ///
+    /// A ball's limits are the smallest box that holds every posture whose clinical angles lie in the joint's ranges.
+    /// Clinical angles that combine reach farther along an axis than each alone: the box is wider than the ranges by
+    /// little for a vertebra, by much for wrist and hip, and for the shoulder it leaves out next to nothing.
+    pub fn limits(&self, joint: usize) -> &[Range] {
+        &self.limits[joint]
     }
 
     /// The names of all coordinates: `<joint>_x`, `_y`, `_z` of a ball, `<joint>` of a hinge.

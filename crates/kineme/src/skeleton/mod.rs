@@ -10,6 +10,7 @@ mod body;
 mod clinical;
 mod joint;
 mod kinematics;
+mod limits;
 mod mirror;
 mod parts;
 mod reach;
