@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::math::statistics::median;
 
 /// The other form must come to less than this share of the exemplar's own distance from the mean.
-const MUCH_BETTER: f64 = 0.6;
+const MUCH_BETTER: f64 = 0.75;
 /// An outlier is this many times as far from the mean as the median member, and farther than all others.
 const OUTLYING: f64 = 3.0;
 /// Rounds in which the mean is made of those that belong together.
