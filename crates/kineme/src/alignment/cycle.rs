@@ -234,7 +234,9 @@ fn best_shift(a: &[f64], b: &[f64], dims: usize) -> (f64, f64) {
         sums[(best + 1) % PHASES],
     );
     let shift = (best as f64 + vertex(before, sums[best], after)) / PHASES as f64;
-    (shift.rem_euclid(1.0), sums[best])
+    // The remainder of a number just below 0 rounds to 1.
+    let shift = shift.rem_euclid(1.0);
+    (if shift < 1.0 { shift } else { 0.0 }, sums[best])
 }
 
 /// Looks for cycles in one sequence.
