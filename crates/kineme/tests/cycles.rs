@@ -247,7 +247,8 @@ fn mirrored_and_out_of_step_exemplars_are_told_and_others_are_not() {
         let mirrors: Vec<Vec<f64>> = sequences.iter().map(|s| mirrored(s)).collect();
         let views: Vec<&[f64]> = sequences.iter().map(Vec::as_slice).collect();
         let mirrors: Vec<&[f64]> = mirrors.iter().map(Vec::as_slice).collect();
-        let found = settings.structures(&views, &mirrors, DIMS).unwrap();
+        let all = settings.register(&views, DIMS).unwrap();
+        let found = settings.structures(&views, &mirrors, &all, DIMS).unwrap();
         found.into_iter().map(|f| f.1).collect()
     };
     assert_eq!(judged(&plain, &settings), [None; 9]);
@@ -320,9 +321,7 @@ fn refuses_what_holds_no_cycle() {
     // A period longer than the sequence is the sequence.
     assert!(cycle(&good[..9 * DIMS], DIMS, 50.0, None).unwrap().frames <= 8.0);
     let views = [&good[..]];
-    assert!(
-        Registration::default()
-            .structures(&views, &[], DIMS)
-            .is_err()
-    );
+    let settings = Registration::default();
+    let all = settings.register(&views, DIMS).unwrap();
+    assert!(settings.structures(&views, &[], &all, DIMS).is_err());
 }

@@ -69,7 +69,7 @@ pub(super) struct Phased {
     used: Vec<Used>,
     /// Landmarks of the part that is used.
     pub sequences: Vec<Vec<f64>>,
-    registered: Registered,
+    pub registered: Registered,
 }
 
 /// Cuts out cycles or trims rests, and registers.
