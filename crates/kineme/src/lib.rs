@@ -66,11 +66,12 @@
 //!
 //! A module imports from modules below it and from none beside it:
 //! [`math`], [`error`]; [`skeleton`], [`motion`]; [`segmentation`], [`alignment`], [`embedding`], [`clustering`],
-//! [`interpolation`], [`retargeting`]; [`primitive`]; [`derivation`], [`choreography`].
+//! [`interpolation`], [`retargeting`]; [`primitive`]; [`derivation`], [`choreography`]; [`control`].
 
 pub mod alignment;
 pub mod choreography;
 pub mod clustering;
+pub mod control;
 pub mod derivation;
 pub mod embedding;
 pub mod error;

@@ -1,0 +1,207 @@
+//! [`State`]: where a body is and how it moves; and the same numbers as a synthesizer carries them.
+
+use nalgebra::Vector3;
+
+use crate::error::{Error, Result};
+use crate::math::rotation::{exp, log_near, right_jacobian};
+use crate::motion::Motion;
+use crate::primitive::{Course, Sample, Travel};
+use crate::skeleton::{Root, Skeleton};
+
+/// The longest rotation vector (radians) that a ball is given another name for: as far as a pose's coordinates go.
+const FARTHEST: f64 = 1.2 * std::f64::consts::PI;
+/// Half the phase over which the slope of the root's height is taken.
+const SLOPE_PHASE: f64 = 1e-4;
+
+/// Where a body is and how it moves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Joint coordinates, radians.
+    pub pose: Vec<f64>,
+    /// Their velocities, radians a second.
+    pub velocity: Vec<f64>,
+    /// Where the body stands.
+    pub root: Root,
+    /// How its root travels; the height here is not used, the root tells it.
+    pub travel: Travel,
+    /// Vertical velocity of the root, metres a second.
+    pub rise: f64,
+}
+
+impl State {
+    /// A posture at rest.
+    pub fn resting(pose: Vec<f64>, root: Root) -> Self {
+        Self {
+            velocity: vec![0.0; pose.len()],
+            pose,
+            root,
+            travel: Travel::default(),
+            rise: 0.0,
+        }
+    }
+
+    /// The posture at a frame of a motion, at rest.
+    ///
+    /// # Errors
+    /// When the motion has no such frame.
+    pub fn at_frame(motion: &Motion, frame: usize) -> Result<Self> {
+        if frame >= motion.frames() {
+            return Err(Error::invalid(format!(
+                "`{}` has {} frames, but no frame {frame}",
+                motion.name(),
+                motion.frames()
+            )));
+        }
+        Ok(Self::resting(
+            motion.pose(frame).to_vec(),
+            *motion.root(frame),
+        ))
+    }
+
+    /// The state of a body that is in the midst of a course at its own pace times `speed`, over the origin and facing
+    /// forward.
+    pub fn on_course(course: &Course, phase: f64, speed: f64) -> Self {
+        let sample = course.sample(phase);
+        let along = Moving::along(&sample, speed);
+        let mut velocities = along.velocities;
+        velocities.pop();
+        let [forward, left, yaw_rate] = along.travel;
+        Self {
+            velocity: velocities,
+            root: Root {
+                position: Vector3::new(0.0, 0.0, sample.travel.height),
+                yaw: 0.0,
+            },
+            travel: Travel {
+                forward,
+                left,
+                height: sample.travel.height,
+                yaw_rate,
+            },
+            rise: rise(course, phase) * speed / sample.secs_per_phase,
+            pose: sample.pose,
+        }
+    }
+
+    /// Refuses what is no state of this body.
+    pub(super) fn check(&self, body: &Skeleton) -> Result<()> {
+        if self.pose.len() != body.dof() || self.velocity.len() != body.dof() {
+            return Err(Error::invalid(format!(
+                "a pose of {} has {} coordinates, found {} and {} velocities",
+                body.name(),
+                body.dof(),
+                self.pose.len(),
+                self.velocity.len()
+            )));
+        }
+        let root = &self.root;
+        let travel = [
+            self.travel.forward,
+            self.travel.left,
+            self.travel.yaw_rate,
+            self.rise,
+            root.yaw,
+        ];
+        let mut numbers = self.pose.iter().chain(&self.velocity).chain(&travel);
+        let finite = numbers.all(|v| v.is_finite()) && root.position.iter().all(|v| v.is_finite());
+        if !finite {
+            return Err(Error::invalid("a posture needs finite numbers"));
+        }
+        Ok(())
+    }
+}
+
+/// What moves, in one row: the joint coordinates, then the root's height, with their velocities; and the velocities of
+/// the root that have no place of their own (forward, left, yaw).
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Moving {
+    pub values: Vec<f64>,
+    pub velocities: Vec<f64>,
+    pub travel: [f64; 3],
+}
+
+impl Moving {
+    pub fn of(state: &State) -> Self {
+        let mut values = state.pose.clone();
+        values.push(state.root.position.z);
+        let mut velocities = state.velocity.clone();
+        velocities.push(state.rise);
+        let t = &state.travel;
+        Self {
+            values,
+            velocities,
+            travel: [t.forward, t.left, t.yaw_rate],
+        }
+    }
+
+    /// A place of a course, run through at its own pace times `rate`. The height's velocity is left zero: see [`rise`].
+    pub fn along(sample: &Sample, rate: f64) -> Self {
+        let per_sec = rate / sample.secs_per_phase;
+        let mut values = Vec::with_capacity(sample.pose.len() + 1);
+        values.extend_from_slice(&sample.pose);
+        values.push(sample.travel.height);
+        let mut velocities = Vec::with_capacity(values.len());
+        velocities.extend(sample.slope.iter().map(|s| s * per_sec));
+        velocities.push(0.0);
+        let t = &sample.travel;
+        Self {
+            values,
+            velocities,
+            travel: [t.forward, t.left, t.yaw_rate].map(|v| v * rate),
+        }
+    }
+
+    /// A posture that is held.
+    pub fn still(values: Vec<f64>) -> Self {
+        Self {
+            velocities: vec![0.0; values.len()],
+            values,
+            travel: [0.0; 3],
+        }
+    }
+
+    /// Gives each ball the rotation vector nearest `goal`: a posture has two names for a rotation near a half turn, and
+    /// the way from one name to the other is a whole turn. The rotations and their velocities stay as they are. True when a name
+    /// has changed.
+    pub fn named_near(&mut self, body: &Skeleton, goal: &[f64]) -> bool {
+        let mut renamed = false;
+        for joint in 0..body.joints().len() {
+            let ball = body.coordinates(joint);
+            if ball.len() != 3 {
+                continue;
+            }
+            let here = Vector3::from_column_slice(&self.values[ball.clone()]);
+            let there = Vector3::from_column_slice(&goal[ball.clone()]);
+            if (here - there).norm() <= std::f64::consts::PI {
+                continue;
+            }
+            let named = log_near(&exp(&here), &there);
+            if named.norm() > FARTHEST {
+                continue;
+            }
+            let speed = Vector3::from_column_slice(&self.velocities[ball.clone()]);
+            let turning = right_jacobian(&here) * speed;
+            // Singular at a whole turn only, which no name comes near.
+            if let Some(inverse) = right_jacobian(&named).try_inverse() {
+                self.values[ball.clone()].copy_from_slice(named.as_slice());
+                self.velocities[ball].copy_from_slice((inverse * turning).as_slice());
+                renamed = true;
+            }
+        }
+        renamed
+    }
+}
+
+/// The slope of the root's height by phase, metres.
+pub(super) fn rise(course: &Course, phase: f64) -> f64 {
+    let (before, after) = if course.is_cyclic() {
+        (phase - SLOPE_PHASE, phase + SLOPE_PHASE)
+    } else {
+        (
+            (phase - SLOPE_PHASE).max(0.0),
+            (phase + SLOPE_PHASE).min(1.0),
+        )
+    };
+    let height = |phase: f64| course.sample(phase).travel.height;
+    (height(after) - height(before)) / (after - before)
+}
