@@ -3,6 +3,11 @@
 pub mod demo;
 pub mod derivation;
 pub mod figures;
+pub mod interpolation_table;
+pub mod intervals;
 mod kmeans;
+pub mod model_table;
+pub mod models;
+pub mod postures;
 pub mod sets;
 pub mod table;

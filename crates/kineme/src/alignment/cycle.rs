@@ -13,7 +13,7 @@ const PHASES: usize = 32;
 /// How far the length of a cycle may be from the period, and a beginning from the event, as a share of it.
 const SLACK: f64 = 0.15;
 /// Lengths and beginnings tried within that, on either side.
-const TRIALS: usize = 12;
+const TRIALS: usize = 8;
 /// Beginnings tried in a period when the best closing cycle is looked for.
 const BEGINNINGS: usize = 16;
 
@@ -217,15 +217,11 @@ fn medoid(cycles: &[Vec<f64>], dims: usize) -> usize {
 /// The share of a cycle by which `b` must be read later to fit `a` best, and the squared distance then, a phase.
 /// Both hold [`PHASES`] + 1 frames, the last as the first.
 fn best_shift(a: &[f64], b: &[f64], dims: usize) -> (f64, f64) {
-    let row = |c: &'_ [f64], k: usize| -> std::ops::Range<usize> {
-        let k = k % PHASES;
-        debug_assert!(c.len() >= (k + 1) * dims);
-        k * dims..(k + 1) * dims
-    };
+    let row = |k: usize| (k % PHASES) * dims..(k % PHASES + 1) * dims;
     let sums: Vec<f64> = (0..PHASES)
         .map(|shift| {
             (0..PHASES)
-                .map(|k| squared_distance(&a[row(a, k)], &b[row(b, k + shift)]))
+                .map(|k| squared_distance(&a[row(k)], &b[row(k + shift)]))
                 .sum::<f64>()
                 / PHASES as f64
         })
@@ -238,7 +234,9 @@ fn best_shift(a: &[f64], b: &[f64], dims: usize) -> (f64, f64) {
         sums[(best + 1) % PHASES],
     );
     let shift = (best as f64 + vertex(before, sums[best], after)) / PHASES as f64;
-    (shift.rem_euclid(1.0), sums[best])
+    // The remainder of a number just below 0 rounds to 1.
+    let shift = shift.rem_euclid(1.0);
+    (if shift < 1.0 { shift } else { 0.0 }, sums[best])
 }
 
 /// Looks for cycles in one sequence.
@@ -318,6 +316,9 @@ impl Cutter<'_> {
                         continue;
                     }
                     let found = self.candidate(start, frames);
+                    if best.is_some_and(|(b, _)| found.gap >= b) {
+                        continue;
+                    }
                     let cost = self.cost(&found, reference);
                     let both = cost * cost + found.gap;
                     if best.is_none_or(|(b, _)| both < b) {

@@ -5,8 +5,11 @@
 //! of equal length, several pairs at a time; sequences are plain vectors, frame by frame.
 //!
 //! [`resting_ends`] cuts rests off, [`Registration`] gives every exemplar of a group a [`Warp`] from the common phase
-//! to its own time, along paths of limited slope ([`align_sloped`]).
+//! to its own time, along paths of limited slope ([`align_sloped`]). Groups that repeat themselves from end to end
+//! ([`period`]) are cut to one cycle each, all from the same event on ([`cycles`]). [`Registration::structures`] finds
+//! the exemplars that no warp brings together with the others, such as the left hand among right ones.
 
+mod centre;
 mod cycle;
 mod dtw;
 mod lanes;

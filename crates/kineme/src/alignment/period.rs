@@ -11,6 +11,11 @@ const PERIODS_SECS: (f64, f64) = (0.2, 4.0);
 const LEAST_CYCLES: f64 = 1.9;
 /// How much sooner or later than the period a posture may come again, as a share of it.
 const TEMPO: f64 = 0.1;
+/// No more than this in seconds, however: a hand is raised in a fifth of a second, which must not be passed over.
+const SHORT_SECS: f64 = 0.1;
+/// Mean distance from the frame exactly a lag later, above which a sequence does not repeat at all: the leeway in tempo
+/// would find likenesses in noise.
+const UNLIKE: f64 = 0.75;
 /// A shorter period is preferred when it repeats almost as well as the best: multiples of a period are periods.
 const NEARLY: f64 = 0.1;
 
@@ -19,8 +24,8 @@ const NEARLY: f64 = 0.1;
 pub struct Period {
     /// One cycle, in frames of the sequence, with a fraction.
     pub frames: f64,
-    /// 1 for perfect repetition; 0 where some half cycle is as unlike its repetition as two frames
-    /// of the sequence drawn at random. Above 0.
+    /// 1 for perfect repetition, towards 0 where some moment of the sequence is as unlike its repetition as two
+    /// frames drawn at random are.
     pub regularity: f64,
 }
 
@@ -29,13 +34,13 @@ pub struct Period {
 /// Each frame is compared with the one a lag later (a tenth of the lag sooner or later allowed, as people do not keep
 /// time exactly), in units of the sequence's own variance, so that frames drawn at random score 1: the difference
 /// function of de Cheveigné and Kawahara (2002). A mean over the sequence would call a wave periodic that is raised
-/// before and lowered after; so the worst half cycle decides. Periods from 0.2 to 4 s are looked for, in
+/// before and lowered after; so the worst moment (a quarter of the lag, at most 0.2 s) decides. Periods from 0.2 to 4 s are looked for, in
 /// sequences of at least 1.9 cycles.
 ///
 /// # Errors
 /// As for [`align`](super::align), and when the rate is not positive.
 pub fn period(sequence: &[f64], dims: usize, rate_hz: f64) -> Result<Option<Period>> {
-    let frames = frames_of(sequence, dims)?;
+    frames_of(sequence, dims)?;
     if !rate_hz.is_finite() || rate_hz <= 0.0 {
         return Err(Error::invalid(format!(
             "a rate must be positive, found {rate_hz} Hz"
@@ -50,17 +55,18 @@ pub fn period(sequence: &[f64], dims: usize, rate_hz: f64) -> Result<Option<Peri
     let n = itself.rows.len();
     let longest = (PERIODS_SECS.1 * rate_hz).min((n - 1) as f64 / LEAST_CYCLES) as usize;
     let shortest = (PERIODS_SECS.0 * rate_hz).ceil().max(2.0) as usize;
+    let most = (SHORT_SECS * rate_hz).round().max(1.0) as usize;
     let means: Vec<f64> = (0..=longest + 1).map(|lag| itself.mean(lag)).collect();
     let mut best: Option<(f64, Period)> = None;
     for lag in shortest..=longest {
         let (before, here, after) = (means[lag - 1], means[lag], means[lag + 1]);
         // Only where it comes back to itself: every slow movement is like itself a moment later.
-        if here >= before || here > after || here > 1.0 {
+        if here >= before || here > after || here > UNLIKE {
             continue;
         }
-        let loose = itself.loose(lag);
+        let loose = itself.loose(lag, ((TEMPO * lag as f64).round() as usize).min(most));
         let mean = loose.iter().sum::<f64>() / loose.len() as f64;
-        let worst = worst_window(&loose, (lag / 4).max(1));
+        let worst = worst_window(&loose, (lag / 8).clamp(1, most));
         if worst < 1.0 && best.is_none_or(|(b, _)| mean < b - NEARLY) {
             let found = Period {
                 frames: (lag as f64 + vertex(before, here, after)) * step as f64,
@@ -69,7 +75,6 @@ pub fn period(sequence: &[f64], dims: usize, rate_hz: f64) -> Result<Option<Peri
             best = Some((mean, found));
         }
     }
-    debug_assert!(best.is_none_or(|(_, p)| p.frames < frames as f64));
     Ok(best.map(|(_, period)| period))
 }
 
@@ -115,8 +120,7 @@ impl<'a> SelfDistance<'a> {
     }
 
     /// For each frame the least distance to a frame about a lag later.
-    fn loose(&self, lag: usize) -> Vec<f64> {
-        let slack = (TEMPO * lag as f64).round() as usize;
+    fn loose(&self, lag: usize, slack: usize) -> Vec<f64> {
         let last = self.rows.len() - 1;
         (0..=last - lag)
             .map(|t| {

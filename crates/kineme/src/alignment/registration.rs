@@ -5,6 +5,7 @@
 
 use rayon::prelude::*;
 
+use super::centre::centred;
 use super::dtw::{Band, LocalCost, frames_of, squared_distance};
 use super::pairs::{Sequences, pair_distances};
 use super::slope::align_sloped;
@@ -64,7 +65,8 @@ pub struct Aligned {
 pub struct Registered {
     /// The sequence with the least sum of warping distances to all others.
     pub medoid: usize,
-    /// One for each sequence; at every knot the mean of their places is the phase.
+    /// One for each sequence; at every knot the mean of their places is the phase, and between knots their slope
+    /// is at least 0.2.
     pub warps: Vec<Warp>,
     /// The distance of each sequence from the mean, as [`Aligned::cost`].
     pub costs: Vec<f64>,
@@ -319,35 +321,6 @@ impl<'a> Aim<'a> {
         .path;
         smoother.warp(&path)
     }
-}
-
-/// Warps followed by the inverse of their mean, so that at each knot the mean of the places is the phase.
-fn centred(warps: &[Warp], closed: bool) -> Result<Vec<Warp>> {
-    let knots = warps[0].places().len();
-    let count = warps.len() as f64;
-    let mean = |phase: f64| warps.iter().map(|w| w.place(phase)).sum::<f64>() / count;
-    let slope = |phase: f64| warps.iter().map(|w| w.slope(phase)).sum::<f64>() / count;
-    let means: Vec<f64> = uniform(knots).into_iter().map(mean).collect();
-    let rough = Warp::through(means, closed)?;
-    // The mean of cubics is not the cubic of means: a few steps of Newton's method close the gap.
-    let phases: Vec<f64> = (1..knots - 1)
-        .map(|k| {
-            let place = k as f64 / (knots - 1) as f64;
-            let mut phase = rough.phase(place);
-            for _ in 0..4 {
-                phase = (phase - (mean(phase) - place) / slope(phase)).clamp(0.0, 1.0);
-            }
-            phase
-        })
-        .collect();
-    warps
-        .iter()
-        .map(|w| {
-            let inner = phases.iter().map(|&p| w.place(p));
-            let places = std::iter::once(0.0).chain(inner).chain([1.0]).collect();
-            Warp::through(places, closed)
-        })
-        .collect()
 }
 
 /// Central differences a knot; one-sided at open ends, around the end of a cycle.

@@ -71,13 +71,13 @@ impl Smoother {
             Some(inner) if k < spans => k as f64 + shifts[inner],
             _ => k as f64,
         };
-        let places = (0..=spans).map(|k| at(k) / spans as f64).collect();
-        floored(places, self.closed)
+        let places: Vec<f64> = (0..=spans).map(|k| at(k) / spans as f64).collect();
+        floored(&places, self.closed)
     }
 }
 
 /// The warp nearest to these places whose slope between knots is at least [`SLOPE_FLOOR`].
-fn floored(places: Vec<f64>, closed: bool) -> Result<Warp> {
+pub(super) fn floored(places: &[f64], closed: bool) -> Result<Warp> {
     let spans = places.len() - 1;
     let floor = |k: usize| SLOPE_FLOOR * k as f64 / spans as f64;
     let inner: Vec<f64> = (1..spans).map(|k| places[k] - floor(k)).collect();

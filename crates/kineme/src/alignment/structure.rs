@@ -2,13 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::registration::Registration;
+use super::registration::{Registered, Registration};
 use super::warp::{resample, uniform};
 use crate::error::{Error, Result};
 use crate::math::statistics::median;
 
 /// The other form must come to less than this share of the exemplar's own distance from the mean.
-const MUCH_BETTER: f64 = 0.6;
+const MUCH_BETTER: f64 = 0.75;
 /// An outlier is this many times as far from the mean as the median member, and farther than all others.
 const OUTLYING: f64 = 3.0;
 /// Rounds in which the mean is made of those that belong together.
@@ -81,8 +81,8 @@ impl Registration {
     /// The structure of each exemplar of a group, against the mean of those that are alike in structure.
     ///
     /// A group may be mixed, its plain mean neither one thing nor the other. So the medoid comes first, and then, for
-    /// up to four rounds, the mean of the exemplars without a mismatch to the last one. `mirrored` holds
-    /// the mirror image of each sequence. Of two equal parts either may be taken for the right one.
+    /// up to four rounds, the mean of the exemplars without a mismatch to the last one. `all` is the registration of
+    /// the sequences, `mirrored` holds the mirror image of each. Of two equal parts either may be taken for the right one.
     ///
     /// # Errors
     /// As for [`Self::register`]; when there is not one mirror image for each sequence.
@@ -90,6 +90,7 @@ impl Registration {
         &self,
         sequences: &[&[f64]],
         mirrored: &[&[f64]],
+        all: &Registered,
         dims: usize,
     ) -> Result<Vec<(Structure, Option<Mismatch>)>> {
         if sequences.len() != mirrored.len() {
@@ -99,7 +100,6 @@ impl Registration {
                 mirrored.len()
             )));
         }
-        let all = self.register(sequences, dims)?;
         let mut reference = resample(sequences[all.medoid], dims, &uniform(self.knots));
         let mut kept: Vec<bool> = Vec::new();
         let mut found = Vec::new();
@@ -118,6 +118,10 @@ impl Registration {
                 break;
             }
             kept = alike;
+            if !kept.contains(&false) {
+                reference = all.mean.clone();
+                continue;
+            }
             let members: Vec<&[f64]> = sequences
                 .iter()
                 .zip(&kept)

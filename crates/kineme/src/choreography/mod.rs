@@ -2,6 +2,8 @@
 
 mod perform;
 mod script;
+mod vocabulary;
 
 pub use perform::perform;
 pub use script::{Key, Script, ScriptAnimation, ScriptExemplar};
+pub use vocabulary::PERFORMED_HZ;

@@ -16,6 +16,8 @@ use crate::motion::landmark_dims;
 
 /// Phases at which the shape of an exemplar is taken for principal coordinates and for choosing an interpolator.
 pub const SHAPE_PHASES: usize = 16;
+/// Exemplars that a primitive may have: its interpolator takes time with their cube.
+pub(super) const MOST_EXEMPLARS: usize = 1000;
 /// Knots of a curve a second of movement: twice the rate that 6 Hz, the most of gross movement, asks for, and more.
 const KNOTS_PER_SEC: f64 = 40.0;
 /// Bounds of the number of knots.
@@ -67,7 +69,7 @@ pub(super) struct Phased {
     used: Vec<Used>,
     /// Landmarks of the part that is used.
     pub sequences: Vec<Vec<f64>>,
-    registered: Registered,
+    pub registered: Registered,
 }
 
 /// Cuts out cycles or trims rests, and registers.
@@ -183,9 +185,15 @@ fn modelled(
     fit.points = rows.flat_map(|row| &row[..kept]).copied().collect();
     fit.method = selection.method;
     fit.trials = selection.trials;
-    fit.error = selection
-        .baselines
-        .map(|baselines| leave_one_out(body, &curves, &selection.weights, baselines));
+    fit.error = selection.baselines.map(|baselines| {
+        leave_one_out(
+            body,
+            &curves,
+            &selection.folds,
+            &selection.weights,
+            baselines,
+        )
+    });
     fit.notes = notes;
     Ok(fit)
 }
@@ -196,6 +204,12 @@ fn check(name: &str, exemplars: &[Exemplar]) -> Result<()> {
             "primitive `{name}` has no exemplar"
         )));
     };
+    if exemplars.len() > MOST_EXEMPLARS {
+        return Err(Error::unsupported(format!(
+            "primitive `{name}` has {} exemplars, more than {MOST_EXEMPLARS}: choose among them",
+            exemplars.len()
+        )));
+    }
     for e in exemplars {
         if **e.motion.skeleton() != **first.motion.skeleton() {
             return Err(Error::invalid(format!(

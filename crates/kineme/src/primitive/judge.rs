@@ -11,21 +11,22 @@ use crate::skeleton::{Role, Root, Skeleton};
 /// Phases at which postures are compared.
 const PHASES: usize = 16;
 
-/// Joint and wrist errors of the predictions that `weights` (row-major, exemplars x exemplars) make.
+/// Joint and wrist errors of the predictions that `weights` (row-major, folds x exemplars) make of the exemplars `folds`.
 pub(super) fn leave_one_out(
     body: &Arc<Skeleton>,
     curves: &[Curve],
+    folds: &[usize],
     weights: &[f64],
     [nearest_m, mean_m]: [f64; 2],
 ) -> LeaveOneOut {
     let n = curves.len();
     let mut joint_rad = 0.0;
     let mut wrist_m = 0.0;
-    for (i, truth) in curves.iter().enumerate() {
-        let guess = Curve::blended(curves, &weights[i * n..(i + 1) * n]);
-        let (joint, wrist) = difference(body, truth, &guess);
-        joint_rad += joint / n as f64;
-        wrist_m += wrist / n as f64;
+    for (&i, weights) in folds.iter().zip(weights.chunks_exact(n)) {
+        let guess = Curve::blended(curves, weights);
+        let (joint, wrist) = difference(body, &curves[i], &guess);
+        joint_rad += joint / folds.len() as f64;
+        wrist_m += wrist / folds.len() as f64;
     }
     LeaveOneOut {
         joint_rad,

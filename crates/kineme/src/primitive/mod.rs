@@ -5,6 +5,7 @@ mod course;
 mod curve;
 mod exemplar;
 mod fitting;
+mod flowfield;
 mod judge;
 mod model;
 mod modelling;
@@ -18,6 +19,7 @@ pub use aim::{Aim, Reached};
 pub use course::{Course, Sample, Travel};
 pub use exemplar::{Exemplar, Provenance};
 pub use fitting::SHAPE_PHASES;
+pub use flowfield::{Approach, FlowSettings, FlowState, Flowfield, Memory, Metric, Update};
 pub use model::{Group, Primitive};
 pub use modelling::{
     Fit, Interpolation, LeaveOneOut, Mismatched, Modelling, Parameterisation, Trial, Used,

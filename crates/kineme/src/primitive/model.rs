@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use super::course::{Course, Sample, sample};
 use super::curve::Curve;
 use super::exemplar::Exemplar;
-use super::fitting::{SHAPE_PHASES, fit, moving, part_of, shape};
+use super::fitting::{MOST_EXEMPLARS, SHAPE_PHASES, fit, moving, part_of, shape};
 use super::modelling::{Fit, Modelling};
 use super::registered::curves;
 use super::space::{ParameterSource, ParameterSpace};
@@ -76,6 +76,9 @@ impl Primitive {
         let Some(first) = exemplars.first() else {
             return Err(wrong("no exemplar".into()));
         };
+        if n > MOST_EXEMPLARS {
+            return Err(wrong(format!("{n} exemplars, more than {MOST_EXEMPLARS}")));
+        }
         let body = first.motion.skeleton();
         if let Some(e) = exemplars.iter().find(|e| **e.motion.skeleton() != **body) {
             return Err(wrong(format!(
@@ -95,6 +98,8 @@ impl Primitive {
         for (e, used) in exemplars.iter().zip(&fit.used) {
             let last = (e.motion.frames() - 1) as f64;
             let within = used.start >= 0.0 && used.end > used.start && used.end <= last + 1e-9;
+            // A shorter part has no duration to speak of.
+            let within = within && used.end - used.start >= 1.0;
             if !within || !(0.0..1.0).contains(&used.shift) {
                 return Err(wrong(format!(
                     "frames {} to {} of {}, which has {}",
@@ -121,6 +126,11 @@ impl Primitive {
         }
         if !(2..=MOST_KNOTS).contains(&fit.knots) {
             return Err(wrong(format!("{} knots, not 2 to {MOST_KNOTS}", fit.knots)));
+        }
+        if fit.warps.iter().any(|w| w.is_closed() != fit.cyclic) {
+            return Err(wrong(
+                "open warps of a cycle, or closed ones of a stroke".into(),
+            ));
         }
         let interpolator = Interpolator::new(&fit.points, n, fit.space.dims(), &fit.method)?;
         Ok(Self {

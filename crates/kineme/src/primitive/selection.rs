@@ -21,6 +21,9 @@ pub(super) enum Points<'a> {
     Principal,
 }
 
+/// Exemplars that are left out in turn at most; of more, evenly chosen ones.
+const MOST_FOLDS: usize = 60;
+
 /// What the selection found.
 pub(super) struct Selection {
     /// Parameters in the unit cube, row-major.
@@ -31,7 +34,9 @@ pub(super) struct Selection {
     pub trials: Vec<Trial>,
     /// Landmark errors (metres) of the nearest exemplar in parameters and of the mean of the others.
     pub baselines: Option<[f64; 2]>,
-    /// The weights of the others for each exemplar, row-major `n x n`, zero on the diagonal.
+    /// The exemplars that were left out in turn.
+    pub folds: Vec<usize>,
+    /// The weights of the others for each of them, row-major `folds x n`, zero for itself.
     pub weights: Vec<f64>,
 }
 
@@ -53,16 +58,20 @@ pub(super) fn select(
     };
     let dims = if dims.is_empty() { vec![0] } else { dims };
     let most = dims[dims.len() - 1];
+    let left = folds(n);
     let (all, folds) = match points {
-        Points::Given(values, dims) => (values.to_vec(), given_folds(values, *dims, n)),
-        Points::Principal => (principal(gram, None, most), principal_folds(gram, most)),
+        Points::Given(values, dims) => (values.to_vec(), given_folds(values, *dims, n, &left)),
+        Points::Principal => (
+            principal(gram, None, most),
+            principal_folds(gram, most, &left),
+        ),
     };
     let mut trials: Vec<(Trial, Vec<f64>)> = Vec::new();
     if n > 1 {
         for &m in &dims {
             for method in candidates(&unit(&all, most, m, n).0, n, m, wanted) {
                 let weights = fold_weights(&folds, n, most, m, &method)?;
-                let error_m = mean_error(gram, &weights, per_landmark);
+                let error_m = mean_error(gram, &folds, &weights, per_landmark);
                 let dims = m;
                 let trial = Trial {
                     method,
@@ -83,14 +92,20 @@ pub(super) fn select(
             dims: m,
             trials: Vec::new(),
             baselines: None,
-            weights: vec![0.0; n * n],
+            folds: Vec::new(),
+            weights: Vec::new(),
         });
     };
     let (trial, weights) = trials[chosen].clone();
     let m = trial.dims;
     let baselines = Some([
-        mean_error(gram, &nearest_weights(&folds, n, most, m), per_landmark),
-        mean_error(gram, &mean_weights(n), per_landmark),
+        mean_error(
+            gram,
+            &folds,
+            &nearest_weights(&folds, n, most, m),
+            per_landmark,
+        ),
+        mean_error(gram, &folds, &mean_weights(&folds, n), per_landmark),
     ]);
     let mut told = vec![trial.clone()];
     for family in [Family::Exact, Family::Smoothed, Family::Shepard] {
@@ -107,6 +122,7 @@ pub(super) fn select(
         method: trial.method,
         trials: told,
         baselines,
+        folds: left,
         weights,
     })
 }
@@ -180,30 +196,39 @@ fn candidates(points: &[f64], n: usize, dims: usize, wanted: Interpolation) -> V
 
 /// Raw parameters without one exemplar, and its own under the transform fitted without it.
 struct Fold {
+    exemplar: usize,
     others: Vec<f64>,
     own: Vec<f64>,
 }
 
-fn given_folds(values: &[f64], dims: usize, n: usize) -> Vec<Fold> {
+/// Which exemplars are left out in turn.
+fn folds(n: usize) -> Vec<usize> {
+    let count = n.min(MOST_FOLDS);
+    (0..count).map(|k| k * n / count).collect()
+}
+
+fn given_folds(values: &[f64], dims: usize, n: usize, left: &[usize]) -> Vec<Fold> {
     let row = |i: usize| &values[i * dims..(i + 1) * dims];
-    (0..n)
-        .map(|i| Fold {
+    left.iter()
+        .map(|&i| Fold {
+            exemplar: i,
             others: (0..n).filter(|&k| k != i).flat_map(row).copied().collect(),
             own: row(i).to_vec(),
         })
         .collect()
 }
 
-fn principal_folds(gram: &DMatrix<f64>, dims: usize) -> Vec<Fold> {
+fn principal_folds(gram: &DMatrix<f64>, dims: usize, left: &[usize]) -> Vec<Fold> {
     let n = gram.nrows();
     if n < 2 {
         return Vec::new();
     }
-    (0..n)
-        .map(|i| {
+    left.iter()
+        .map(|&i| {
             let mut scores = principal(gram, Some(i), dims);
             let own = scores.split_off((n - 1) * dims);
             Fold {
+                exemplar: i,
                 others: scores,
                 own,
             }
@@ -288,28 +313,28 @@ fn fold_weights(
     m: usize,
     method: &Method,
 ) -> Result<Vec<f64>> {
-    let mut weights = vec![0.0; n * n];
+    let mut weights = Vec::with_capacity(folds.len() * n);
     let mut own = vec![0.0; n - 1];
-    for (i, fold) in folds.iter().enumerate() {
+    for fold in folds {
         let (points, ranges) = unit(&fold.others, most, m, n - 1);
         let interpolator = Interpolator::new(&points, n - 1, m, method)?;
         let asked: Vec<f64> = (0..m).map(|d| place(fold.own[d], ranges[d])).collect();
         interpolator.weights(&interpolator.clamped(&asked), &mut own);
-        spread(&own, i, n, &mut weights);
+        spread(&own, fold.exemplar, &mut weights);
     }
     Ok(weights)
 }
 
-/// Writes the weights of the others into row `i`.
-fn spread(own: &[f64], i: usize, n: usize, weights: &mut [f64]) {
-    for (k, w) in own.iter().enumerate() {
-        weights[i * n + k + usize::from(k >= i)] = *w;
-    }
+/// Appends the weights of the others with a zero for the exemplar itself.
+fn spread(own: &[f64], exemplar: usize, weights: &mut Vec<f64>) {
+    weights.extend_from_slice(&own[..exemplar]);
+    weights.push(0.0);
+    weights.extend_from_slice(&own[exemplar..]);
 }
 
 fn nearest_weights(folds: &[Fold], n: usize, most: usize, m: usize) -> Vec<f64> {
-    let mut weights = vec![0.0; n * n];
-    for (i, fold) in folds.iter().enumerate() {
+    let mut weights = Vec::with_capacity(folds.len() * n);
+    for fold in folds {
         let (points, ranges) = unit(&fold.others, most, m, n - 1);
         let asked: Vec<f64> = (0..m).map(|d| place(fold.own[d], ranges[d])).collect();
         let distance = |k: usize| -> f64 {
@@ -325,22 +350,25 @@ fn nearest_weights(folds: &[Fold], n: usize, most: usize, m: usize) -> Vec<f64> 
         if let Some(k) = nearest {
             own[k] = 1.0;
         }
-        spread(&own, i, n, &mut weights);
+        spread(&own, fold.exemplar, &mut weights);
     }
     weights
 }
 
-fn mean_weights(n: usize) -> Vec<f64> {
-    let share = 1.0 / (n - 1) as f64;
-    let weight = |c: usize| if c / n == c % n { 0.0 } else { share };
-    (0..n * n).map(weight).collect()
+fn mean_weights(folds: &[Fold], n: usize) -> Vec<f64> {
+    let own = vec![1.0 / (n - 1) as f64; n - 1];
+    let mut weights = Vec::with_capacity(folds.len() * n);
+    for fold in folds {
+        spread(&own, fold.exemplar, &mut weights);
+    }
+    weights
 }
 
-/// The mean over exemplars of the root mean square landmark error that these weights make.
-fn mean_error(gram: &DMatrix<f64>, weights: &[f64], per_landmark: f64) -> f64 {
+/// The mean over folds of the root mean square landmark error that these weights make.
+fn mean_error(gram: &DMatrix<f64>, folds: &[Fold], weights: &[f64], per_landmark: f64) -> f64 {
     let n = gram.nrows();
-    let error = |i: usize| {
-        let w = &weights[i * n..(i + 1) * n];
+    let error = |(fold, w): (&Fold, &[f64])| {
+        let i = fold.exemplar;
         let mut square = gram[(i, i)];
         for k in 0..n {
             square -= 2.0 * w[k] * gram[(i, k)];
@@ -348,5 +376,6 @@ fn mean_error(gram: &DMatrix<f64>, weights: &[f64], per_landmark: f64) -> f64 {
         }
         (square.max(0.0) / per_landmark).sqrt()
     };
-    (0..n).map(error).sum::<f64>() / n as f64
+    let errors = folds.iter().zip(weights.chunks_exact(n)).map(error);
+    errors.sum::<f64>() / folds.len() as f64
 }

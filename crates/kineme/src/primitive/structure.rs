@@ -76,7 +76,8 @@ pub(super) fn foreign(
         .collect();
     let borrowed: Vec<&[f64]> = phased.sequences.iter().map(Vec::as_slice).collect();
     let images: Vec<&[f64]> = mirrored.iter().map(Vec::as_slice).collect();
-    let found = registration.structures(&borrowed, &images, landmark_dims(body))?;
+    let found =
+        registration.structures(&borrowed, &images, &phased.registered, landmark_dims(body))?;
     for (i, (_, mismatch)) in found.into_iter().enumerate() {
         match mismatch {
             Some(Mismatch::Mirrored) => foreign

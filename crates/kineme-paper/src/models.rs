@@ -1,0 +1,308 @@
+//! Classes of labelled recordings as primitives, each judged on an exemplar that it has not seen.
+
+use kineme::alignment::{Registration, Trim, cycle, period, resting_ends};
+use kineme::motion::landmark_dims;
+use kineme::primitive::{
+    Exemplar, Fit, Interpolation, Mismatched, Modelling, ParameterSource, ParameterSpace,
+    Primitive, Provenance, Used,
+};
+use kineme::{Motion, interpolation::Method};
+use rayon::prelude::*;
+
+use crate::postures::{Errors, Postures};
+use crate::sets::{LabelledSet, Result};
+
+/// Phases at which movements are compared: the knots of the registration.
+const PHASES: usize = 64;
+
+/// A clip of a class, left out of it.
+#[derive(Debug, Clone)]
+pub struct Fold {
+    /// The class, an index into those of the set.
+    pub class: usize,
+    /// The clip that is left out, an index into the motions of the set.
+    pub left_out: usize,
+    /// All other clips of the class.
+    pub others: Vec<usize>,
+}
+
+/// Every clip of every class left out once, class by class.
+pub fn folds(set: &LabelledSet) -> Vec<Fold> {
+    let of_class = |class: usize| {
+        let members: Vec<usize> = (0..set.labels.len())
+            .filter(|&i| set.labels[i] == class)
+            .collect();
+        (0..members.len()).map(move |k| {
+            let mut others = members.clone();
+            Fold {
+                class,
+                left_out: others.remove(k),
+                others,
+            }
+        })
+    };
+    (0..set.classes.len()).flat_map(of_class).collect()
+}
+
+/// A whole clip as an exemplar.
+pub fn exemplar(motion: &Motion) -> Exemplar {
+    Exemplar {
+        provenance: Provenance {
+            motion: motion.name().into(),
+            start_secs: 0.0,
+            end_secs: motion.duration_secs(),
+            blake3: None,
+        },
+        motion: motion.clone(),
+        adverbs: None,
+    }
+}
+
+/// The primitive of a fold's other clips. Those that are of another structure are left out, as nobody labelled structure.
+///
+/// # Errors
+/// As [`Primitive::learn`].
+pub fn learn(set: &LabelledSet, fold: &Fold, modelling: &Modelling) -> Result<Primitive> {
+    let exemplars = fold.others.iter().map(|&i| exemplar(&set.motions[i]));
+    let modelling = Modelling {
+        mismatched: Mismatched::LeaveOut,
+        ..modelling.clone()
+    };
+    let name = &set.classes[fold.class];
+    Ok(Primitive::learn(name, exemplars.collect(), &modelling)?)
+}
+
+/// Who predicts the clip that is left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rival {
+    /// The mean of the registered exemplars.
+    ClassMean,
+    /// The exemplar nearest in the parameters of the interpolator chosen.
+    Nearest,
+    /// The exemplar that comes nearest to the truth: it looks, and is no rival but a mark.
+    NearestInTruth,
+    /// Inverse distances.
+    Shepard,
+    /// Verbs and Adverbs, exact.
+    VerbsAndAdverbs,
+    /// What the primitive chooses by itself.
+    Chosen,
+}
+
+impl Rival {
+    /// All of them, in the order of the tables.
+    pub const ALL: [Rival; 6] = [
+        Rival::ClassMean,
+        Rival::Nearest,
+        Rival::NearestInTruth,
+        Rival::Shepard,
+        Rival::VerbsAndAdverbs,
+        Rival::Chosen,
+    ];
+
+    /// The heading of its column.
+    pub fn name(self) -> &'static str {
+        match self {
+            Rival::ClassMean => "class mean",
+            Rival::Nearest => "nearest",
+            Rival::NearestInTruth => "(best single)",
+            Rival::Shepard => "Shepard",
+            Rival::VerbsAndAdverbs => "Verbs and Adverbs",
+            Rival::Chosen => "**chosen**",
+        }
+    }
+}
+
+/// What came of a fold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// The class.
+    pub class: usize,
+    /// Errors in the order of [`Rival::ALL`].
+    pub errors: [Errors; 6],
+    /// Whether the class was taken for a cycle.
+    pub cyclic: bool,
+    /// Exemplars of another structure that were left out of the model.
+    pub foreign: usize,
+    /// The interpolator chosen.
+    pub method: Method,
+    /// How many parameters it has.
+    pub dims: usize,
+}
+
+/// Judges every fold of a set, several at a time.
+///
+/// # Errors
+/// When a class has fewer than two clips, or a model cannot be made.
+pub fn judge(set: &LabelledSet, modelling: &Modelling) -> Result<Vec<Judged>> {
+    let judged = |fold: &Fold| judge_fold(set, fold, modelling);
+    folds(set).par_iter().map(judged).collect()
+}
+
+fn judge_fold(set: &LabelledSet, fold: &Fold, modelling: &Modelling) -> Result<Judged> {
+    let truth = Truth::of(&set.motions[fold.left_out]);
+    let mut weights: Vec<(Rival, Vec<f64>)> = Vec::new();
+    let mut chosen = None;
+    for (rival, interpolation) in [
+        (Rival::Shepard, Interpolation::Shepard),
+        (Rival::VerbsAndAdverbs, Interpolation::VerbsAndAdverbs),
+        (Rival::Chosen, Interpolation::Automatic),
+    ] {
+        let modelling = Modelling {
+            interpolation,
+            ..modelling.clone()
+        };
+        let primitive = learn(set, fold, &modelling)?;
+        let n = primitive.exemplars().len();
+        let p = primitive.parameters_of(truth.motion)?;
+        let mut own = vec![0.0; n];
+        let interpolator = primitive.interpolator();
+        interpolator.weights(&interpolator.clamped(&p), &mut own);
+        weights.push((rival, own));
+        if rival == Rival::Chosen {
+            weights.push((Rival::ClassMean, vec![1.0 / n as f64; n]));
+            weights.push((Rival::Nearest, single(n, nearest(&primitive, &p))));
+            chosen = Some(primitive);
+        }
+    }
+    let primitive = chosen.ok_or("nothing was chosen")?;
+    let n = primitive.exemplars().len();
+    let exemplars = registered(&primitive);
+    let reading = truth.reading(&primitive)?;
+    let mut errors = [Errors::default(); 6];
+    for (rival, weights) in &weights {
+        let place = Rival::ALL.iter().position(|r| r == rival).unwrap_or(0);
+        errors[place] = truth.errors(&primitive, &reading, blended(&exemplars, weights))?;
+    }
+    let singles = (0..n).map(|i| truth.errors(&primitive, &reading, exemplars[i].clone()));
+    let singles: Vec<Errors> = singles.collect::<Result<_>>()?;
+    let best = |e: &&Errors, f: &&Errors| e.landmark_cm.total_cmp(&f.landmark_cm);
+    errors[2] = *singles.iter().min_by(best).ok_or("no exemplars")?;
+    Ok(Judged {
+        class: fold.class,
+        errors,
+        cyclic: primitive.is_cyclic(),
+        foreign: fold.others.len() - n,
+        method: primitive.fitted().method,
+        dims: primitive.parameters().dims(),
+    })
+}
+
+/// The poses of each exemplar at the phases compared.
+fn registered(primitive: &Primitive) -> Vec<Vec<f64>> {
+    let poses = |i: usize| {
+        let pose = |k: usize| primitive.registered(i, phase(k)).pose;
+        (0..PHASES).flat_map(pose).collect()
+    };
+    (0..primitive.exemplars().len()).map(poses).collect()
+}
+
+fn phase(k: usize) -> f64 {
+    // Phase 1 of a cycle is phase 0 again: the least below it stands for the end.
+    (k as f64 / (PHASES - 1) as f64).min(1.0 - 1e-12)
+}
+
+fn blended(exemplars: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
+    let mut sum = vec![0.0; exemplars[0].len()];
+    for (poses, w) in exemplars.iter().zip(weights) {
+        for (s, v) in sum.iter_mut().zip(poses) {
+            *s += w * v;
+        }
+    }
+    sum
+}
+
+fn single(n: usize, i: usize) -> Vec<f64> {
+    let mut weights = vec![0.0; n];
+    weights[i] = 1.0;
+    weights
+}
+
+fn nearest(primitive: &Primitive, p: &[f64]) -> usize {
+    let squared = |i: usize| -> f64 {
+        let pairs = primitive.point(i).iter().zip(p);
+        pairs.map(|(a, b)| (a - b) * (a - b)).sum()
+    };
+    (0..primitive.exemplars().len())
+        .min_by(|&a, &b| squared(a).total_cmp(&squared(b)))
+        .unwrap_or(0)
+}
+
+/// The clip that is to be predicted.
+struct Truth<'a> {
+    motion: &'a Motion,
+    landmarks: Vec<f64>,
+    dims: usize,
+}
+
+/// The part of the clip that is compared, the same for all rivals.
+struct Reading {
+    used: Used,
+    /// Its landmarks.
+    sequence: Vec<f64>,
+}
+
+impl<'a> Truth<'a> {
+    fn of(motion: &'a Motion) -> Self {
+        Self {
+            motion,
+            landmarks: motion.landmarks(),
+            dims: landmark_dims(motion.skeleton()),
+        }
+    }
+
+    /// Its rests trimmed; of a cyclic primitive one cycle in step with it.
+    fn reading(&self, primitive: &Primitive) -> Result<Reading> {
+        let (dims, rate) = (self.dims, self.motion.rate_hz());
+        if !primitive.is_cyclic() {
+            let range = resting_ends(&self.landmarks, dims, rate, &Trim::default());
+            return Ok(Reading {
+                used: Used {
+                    start: range.start as f64,
+                    end: (range.end - 1) as f64,
+                    shift: 0.0,
+                },
+                sequence: self.landmarks[range.start * dims..range.end * dims].to_vec(),
+            });
+        }
+        let expected = primitive.at(&primitive.middle())?.duration_secs() * rate;
+        let frames = period(&self.landmarks, dims, rate)?.map_or(expected, |p| {
+            p.frames / (p.frames / expected).round().max(1.0)
+        });
+        let reference = &primitive.fitted().reference;
+        let found = cycle(&self.landmarks, dims, frames.max(2.0), Some(reference))?;
+        let phases = found.frames.ceil() as usize + 1;
+        Ok(Reading {
+            used: Used {
+                start: found.start,
+                end: found.start + found.frames,
+                shift: found.shift,
+            },
+            sequence: found.sample(&self.landmarks, dims, phases)?,
+        })
+    }
+
+    /// The errors of predicted poses: the clip is warped to them, which costs no rival more than another.
+    fn errors(&self, primitive: &Primitive, reading: &Reading, poses: Vec<f64>) -> Result<Errors> {
+        let guess = Postures::of_poses(primitive.body(), poses)?;
+        let registration = Registration {
+            knots: PHASES,
+            cyclic: primitive.is_cyclic(),
+            ..Registration::default()
+        };
+        let aligned = registration.register_to(guess.landmarks(), &reading.sequence, self.dims)?;
+        // A primitive of this clip alone reads it as those of the class are read.
+        let fit = Fit {
+            used: vec![reading.used],
+            warps: vec![aligned.warp],
+            knots: PHASES,
+            space: ParameterSpace::new(Vec::new(), ParameterSource::Adverbs)?,
+            points: Vec::new(),
+            method: Method::Shepard { power: 2.0 },
+            ..primitive.fitted().clone()
+        };
+        let alone = Primitive::from_fit("left out", vec![exemplar(self.motion)], fit, None)?;
+        let truth = registered(&alone).swap_remove(0);
+        Ok(guess.against(&Postures::of_poses(primitive.body(), truth)?))
+    }
+}
