@@ -1,6 +1,6 @@
 //! `kineme convert`: motions as BVH, CSV or NPZ, as they are or on another body.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use kineme::{Format, Motion, Recording, Skeleton, Source as Origin};
@@ -72,7 +72,7 @@ pub fn run(args: &ConvertArgs, global: &Global) -> Result<u8, Failure> {
         ))
         .hint("give a folder for OUT"));
     }
-    if by_extension(&args.out).is_some() {
+    if Written::of(&args.out).is_some() {
         return Err(Failure::usage(format!(
             "`{shown}` is a folder or an archive, and so must OUT be a folder, not `{}`",
             args.out.display()
@@ -81,7 +81,7 @@ pub fn run(args: &ConvertArgs, global: &Global) -> Result<u8, Failure> {
     many(
         &job,
         &entries,
-        &mirrored(&names, shown, extension(format)),
+        &mirrored(&names, shown, format.extension()),
         args,
         global,
     )
@@ -246,7 +246,7 @@ fn format(args: &ConvertArgs) -> Result<Written, Failure> {
     if let Some(to) = args.to {
         return Ok(to);
     }
-    if let Some(format) = by_extension(&args.out) {
+    if let Some(format) = Written::of(&args.out) {
         return Ok(format);
     }
     let is_one_file = args.input.is_file()
@@ -259,24 +259,6 @@ fn format(args: &ConvertArgs) -> Result<Written, Failure> {
         ))
         .hint("write .bvh, .csv or .npz, or say --to bvh, --to csv or --to npz")),
         _ => Ok(Written::Bvh),
-    }
-}
-
-fn by_extension(out: &Path) -> Option<Written> {
-    let extension = out.extension()?.to_string_lossy().to_lowercase();
-    match extension.as_str() {
-        "bvh" => Some(Written::Bvh),
-        "csv" => Some(Written::Csv),
-        "npz" => Some(Written::Npz),
-        _ => None,
-    }
-}
-
-fn extension(format: Written) -> &'static str {
-    match format {
-        Written::Bvh => "bvh",
-        Written::Csv => "csv",
-        Written::Npz => "npz",
     }
 }
 

@@ -60,6 +60,14 @@ impl Failure {
         self.hint(hint)
     }
 
+    /// The same, blamed on a place: `labels.csv:7`.
+    pub fn at(self, place: &str) -> Self {
+        Self {
+            message: format!("{place}: {}", self.message),
+            ..self
+        }
+    }
+
     /// Prints the message and the advice to stderr, a line each.
     pub fn print(&self) {
         complain(&self.message);

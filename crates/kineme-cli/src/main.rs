@@ -1,16 +1,25 @@
 //! The binary `kineme`: verbs over the library, with messages, progress and exit codes.
 
 mod args;
+mod choreograph;
 mod convert;
 mod demo;
 mod derive;
+mod describe;
+mod draft;
+mod edit;
 mod failure;
 mod findings;
 mod info;
+mod labelled;
+mod learn;
 mod outputs;
 mod progress;
+mod show;
 mod source;
+mod synthesize;
 mod table;
+mod vocabularies;
 mod warnings;
 
 use std::process::ExitCode;
@@ -55,6 +64,11 @@ fn run(cli: &Cli) -> Result<u8, Failure> {
         Command::Info(args) => info::run(args, &cli.global),
         Command::Convert(args) => convert::run(args, &cli.global),
         Command::Derive(args) => derive::run(args, &cli.global),
+        Command::Learn(args) => learn::run(args, &cli.global),
+        Command::Choreograph(args) => choreograph::run(args, &cli.global),
+        Command::Show(args) => show::run(args, &cli.global),
+        Command::Edit(args) => edit::run(args, &cli.global),
+        Command::Synthesize(args) => synthesize::run(args, &cli.global),
         Command::Demo(args) => demo::run(args, &cli.global),
     }
 }

@@ -3,9 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use kineme::math::rotation::Axis;
+use kineme::{Format, Motion, Recording, Source};
 use kineme_formats::output::Existing;
+use kineme_formats::tables::body_angles;
+use kineme_formats::{bvh, npz};
 
-use crate::args::Global;
+use crate::args::{Global, Written};
 use crate::failure::Failure;
 
 /// What the command line says about files that exist.
@@ -35,6 +39,47 @@ pub fn refuse_existing<'a>(
 /// A failure to write is no unreadable input.
 pub fn unwritten(error: kineme_formats::FormatError) -> Failure {
     Failure::failed(error.to_string())
+}
+
+impl Written {
+    /// The format that a file's name says.
+    pub fn of(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_string_lossy().to_lowercase();
+        [Self::Bvh, Self::Csv, Self::Npz]
+            .into_iter()
+            .find(|format| format.extension() == extension)
+    }
+
+    /// What a file's name ends with.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Bvh => "bvh",
+            Self::Csv => "csv",
+            Self::Npz => "npz",
+        }
+    }
+
+    /// A motion of a body in this format: as BVH in centimetres with y up, as most programs expect it.
+    pub fn bytes(self, motion: &Motion) -> Result<Vec<u8>, Failure> {
+        match self {
+            Self::Bvh => {
+                let source = Source {
+                    format: Format::Synthetic,
+                    up: Axis::Y,
+                    unit_metres: 0.01,
+                    warnings: Vec::new(),
+                };
+                let recording = Recording::from_motion(motion).with_source(source)?;
+                let mut bytes = Vec::new();
+                bvh::write(&recording, &mut bytes).map_err(unwritten)?;
+                Ok(bytes)
+            }
+            Self::Csv => body_angles::table(motion)
+                .write(motion.name())
+                .map_err(unwritten),
+            Self::Npz => npz::write(motion).map_err(unwritten),
+        }
+    }
 }
 
 /// Paths below a folder for motions of these names, which lie below `root`: the same folders, with another extension.

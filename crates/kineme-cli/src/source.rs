@@ -1,12 +1,13 @@
 //! INPUT of every verb: read in parallel, told in order.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use kineme::retargeting::{Profile, retarget};
 use kineme::{Motion, Recording, Skeleton};
-use kineme_formats::input::{Entry, Inputs, ReadOptions};
+use kineme_formats::input::{Entry, InputRates, Inputs, ReadOptions};
+use kineme_formats::{FormatError, Place};
 use rayon::prelude::*;
 
 use crate::args::ReadArgs;
@@ -37,10 +38,40 @@ pub struct Read<T> {
     pub failures: Vec<Failure>,
     /// How many motions there were.
     pub of: usize,
+    /// How many of them are not among the items.
+    pub skipped: usize,
     keep_going: bool,
 }
 
 impl<T> Read<T> {
+    /// Of no motion read now, but `of` known from before.
+    pub fn nothing(of: usize) -> Self {
+        Self {
+            items: Vec::new(),
+            failures: Vec::new(),
+            of,
+            skipped: 0,
+            keep_going: true,
+        }
+    }
+
+    /// The same of `of` motions that gave these items.
+    pub fn with<U>(self, items: Vec<U>, of: usize) -> Read<U> {
+        Read {
+            skipped: of - items.len().min(of),
+            items,
+            failures: self.failures,
+            of,
+            keep_going: self.keep_going,
+        }
+    }
+
+    /// Adds what had to be left out later.
+    pub fn skip(&mut self, failures: Vec<Failure>) {
+        self.skipped += failures.len();
+        self.failures.extend(failures);
+    }
+
     /// Ends the run when a motion could not be read and that is not to be skipped, or when none could.
     pub fn unless_failed(mut self) -> Result<Self, Failure> {
         if self.failures.is_empty() || (self.keep_going && !self.items.is_empty()) {
@@ -66,8 +97,10 @@ impl<T> Read<T> {
         if self.failures.is_empty() {
             return 0;
         }
-        let count = self.failures.len();
-        complain(&format!("skipped {count} of {} motions", self.of));
+        complain(&format!(
+            "skipped {} of {} motions",
+            self.skipped, self.of
+        ));
         crate::failure::UNREADABLE
     }
 }
@@ -76,14 +109,7 @@ impl Source {
     /// Finds the motions of INPUT and settles how to read them.
     pub fn open<P: AsRef<Path>>(paths: &[P], args: &ReadArgs) -> Result<Self, Failure> {
         let profile = args.profile.as_deref().map(profile).transpose()?;
-        let options = ReadOptions {
-            asf: args.asf.clone(),
-            rates: args.input_rate.clone().unwrap_or_default(),
-        };
-        let inputs = Inputs::resolve(paths, &options)?;
-        for warning in &inputs.warnings {
-            complain(&format!("warning: {warning}"));
-        }
+        let inputs = resolve(paths, args, None)?;
         if inputs.ignored > 0 {
             complain(&match inputs.ignored {
                 1 => "note: 1 file is no motion and was ignored".into(),
@@ -97,25 +123,67 @@ impl Source {
         })
     }
 
-    /// Works on every motion of `entries`, told with its index, on all threads. Once one has failed, later ones are not begun, unless they
-    /// are to be skipped.
-    pub fn each<T: Send>(
+    /// Finds motions one by one, each with the frame rate (hertz) that somebody knows of it. What is at a path is told
+    /// beside it, in the same order: just one motion, or why not.
+    pub fn one_by_one(
+        files: &[(PathBuf, Option<f64>)],
+        args: &ReadArgs,
+    ) -> Result<(Self, Vec<Result<Entry, FormatError>>), Failure> {
+        let profile = args.profile.as_deref().map(profile).transpose()?;
+        let mut found: Vec<Option<Result<Entry, FormatError>>> = vec![None; files.len()];
+        // Rates are said of all files of a run: one run for each.
+        while let Some(first) = found.iter().position(Option::is_none) {
+            let rate_hz = files[first].1;
+            let same: Vec<usize> = (first..files.len())
+                .filter(|&i| files[i].1 == rate_hz)
+                .collect();
+            let paths: Vec<&PathBuf> = same.iter().map(|&i| &files[i].0).collect();
+            let inputs = resolve(&paths, args, rate_hz)?;
+            let mut entries = inputs.entries.into_iter().peekable();
+            for (i, path) in same.into_iter().zip(paths) {
+                let name = path.to_string_lossy();
+                let below = format!("{}/", name.trim_end_matches('/'));
+                let mut here = entries.next_if(|e| *e.name() == name).map(Ok);
+                while entries.next_if(|e| e.name().starts_with(&below)).is_some() {
+                    here = None;
+                }
+                found[i] = Some(here.unwrap_or_else(|| {
+                    let expected = "one motion";
+                    Err(FormatError::new(&*name, Place::File, "a folder or an archive", expected))
+                }));
+            }
+        }
+        let source = Self {
+            inputs: Inputs {
+                entries: Vec::new(),
+                ignored: 0,
+                warnings: Vec::new(),
+            },
+            keep_going: args.keep_going,
+            profile,
+        };
+        Ok((source, found.into_iter().flatten().collect()))
+    }
+
+    /// Works on every one of `items`, told with its index, on all threads. Once one has failed, later ones are not begun,
+    /// unless they are to be skipped.
+    pub fn each<I: Sync, T: Send>(
         &self,
-        entries: &[&Entry],
+        items: &[I],
         what: &'static str,
-        work: impl Fn(usize, &Entry) -> Result<T, Failure> + Sync,
+        work: impl Fn(usize, &I) -> Result<T, Failure> + Sync,
     ) -> Read<T> {
-        let bar = progress::bar(entries.len(), what);
+        let bar = progress::bar(items.len(), what);
         let first_failed = AtomicUsize::new(usize::MAX);
-        let results: Vec<Option<Result<T, Failure>>> = entries
+        let results: Vec<Option<Result<T, Failure>>> = items
             .par_iter()
             .with_max_len(1)
             .enumerate()
-            .map(|(i, entry)| {
+            .map(|(i, item)| {
                 if !self.keep_going && first_failed.load(Ordering::Relaxed) < i {
                     return None;
                 }
-                let result = work(i, entry);
+                let result = work(i, item);
                 if result.is_err() {
                     first_failed.fetch_min(i, Ordering::Relaxed);
                 }
@@ -127,13 +195,15 @@ impl Source {
         let mut read = Read {
             items: Vec::new(),
             failures: Vec::new(),
-            of: entries.len(),
+            of: items.len(),
+            skipped: 0,
             keep_going: self.keep_going,
         };
         for result in results.into_iter().flatten() {
             match result {
                 Ok(item) => read.items.push(item),
                 Err(failure) => {
+                    read.skipped += 1;
                     read.failures.push(failure);
                     if !self.keep_going {
                         break;
@@ -204,6 +274,27 @@ impl Source {
         }
         Ok((done.motion, warnings))
     }
+}
+
+/// The motions at paths, and on stderr what had to be assumed of them.
+fn resolve<P: AsRef<Path>>(
+    paths: &[P],
+    args: &ReadArgs,
+    rate_hz: Option<f64>,
+) -> Result<Inputs, Failure> {
+    let rates = match rate_hz {
+        Some(hz) => hz.to_string().parse::<InputRates>()?,
+        None => args.input_rate.clone().unwrap_or_default(),
+    };
+    let options = ReadOptions {
+        asf: args.asf.clone(),
+        rates,
+    };
+    let inputs = Inputs::resolve(paths, &options)?;
+    for warning in &inputs.warnings {
+        complain(&format!("warning: {warning}"));
+    }
+    Ok(inputs)
 }
 
 /// Tells the warnings of motions, each kind once.

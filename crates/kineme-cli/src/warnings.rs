@@ -18,9 +18,10 @@ struct Kind {
 }
 
 impl Warnings {
-    /// A remark on one motion. Remarks that differ in nothing but numbers are of one kind.
+    /// A remark on one motion or primitive. Remarks that differ in nothing but numbers and quoted names are of one kind.
     pub fn add(&mut self, motion: &str, text: &str) {
-        let key: String = text
+        let unquoted: String = text.split('`').step_by(2).collect();
+        let key: String = unquoted
             .chars()
             .map(|c| if c.is_ascii_digit() { '0' } else { c })
             .collect();
@@ -68,6 +69,8 @@ mod tests {
             ("b", "7.25 of 9 points missing"),
             ("b", "up axis: z"),
             ("c", "1000 of 10000 points missing"),
+            ("p", "left out: `x` from 1 s"),
+            ("q", "left out: `y.bvh` from 2.25 s"),
         ] {
             warnings.add(motion, text);
         }
@@ -77,7 +80,8 @@ mod tests {
             [
                 "a: 12 of 300 points missing (and 2 more like it)",
                 "a: up axis: y",
-                "b: up axis: z"
+                "b: up axis: z",
+                "p: left out: `x` from 1 s (and 1 more like it)"
             ]
         );
     }

@@ -83,6 +83,7 @@ pub mod retargeting;
 pub mod segmentation;
 pub mod skeleton;
 
+pub use control::{Synthesis, Synthesizer};
 pub use error::{Error, Result};
 pub use motion::{Format, Motion, Observed, Placement, RecordedJoint, Recording, Source, Track};
 pub use primitive::{

@@ -22,8 +22,10 @@ const NONE: f64 = 1e-9;
 /// Per joint, the speed added to the course's is at most `1.875 x / T + v`, the acceleration at most
 /// `5.78 x / T^2 + 3.94 v / S`, and the body overshoots by at most `0.198 v S`, where x and v are the differences in
 /// position (radians) and velocity at entry, S is `blend_secs`, and T is S or as much longer as `max_speed` asks for:
-/// with the defaults no more than 31 + 9.9 v rad/s^2. While T is longer than S the course waits, which slows it by
-/// at most `0.75 / S` of its velocity a second.
+/// with the defaults no more than 31 + 9.9 v rad/s^2. While T is longer than S, or the course too short for S, the
+/// course waits; that changes its velocity by at most the share `0.75 / S` a second (S then being no longer than the
+/// seconds that it has left). Where a joint limit holds back a joint of speed u, its smooth bend adds at most
+/// `0.77 u^2 / w`, w being the limit's transition, 3 degrees or less.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inertialization {
     /// Seconds until nothing is left of a difference; half of it is gone after half of them.

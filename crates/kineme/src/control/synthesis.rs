@@ -10,8 +10,8 @@ use crate::error::{Error, Result};
 use crate::motion::Motion;
 use crate::primitive::Course;
 
-/// Frames that a motion may have: some hours at the rate of any camera.
-const MOST_FRAMES: usize = 1_000_000;
+/// Steps that a motion may have: some hours at the rate of any camera.
+const MOST_STEPS: f64 = 1e6;
 
 /// How a motion is made of a course.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,16 +70,17 @@ impl Synthesis {
         let mut synthesizer =
             Synthesizer::new(Arc::clone(&body), self.rate_hz, from, self.settings)?;
         synthesizer.start(Arc::clone(course), &manner)?;
+        let steps = synthesizer.remaining_secs() * self.rate_hz;
+        if steps > MOST_STEPS {
+            return Err(Error::invalid(format!(
+                "`{name}` would have {steps:.0} frames at {} Hz, more than {MOST_STEPS:.0}",
+                self.rate_hz
+            )));
+        }
         let first = synthesizer.command();
         let (mut poses, mut roots) = (first.pose.clone(), vec![first.root]);
         let mut limited_frames = usize::from(first.limited > 0);
         while !synthesizer.command().finished {
-            if roots.len() == MOST_FRAMES {
-                return Err(Error::invalid(format!(
-                    "`{name}` would have more than {MOST_FRAMES} frames at {} Hz",
-                    self.rate_hz
-                )));
-            }
             let command = synthesizer.step();
             poses.extend_from_slice(&command.pose);
             roots.push(command.root);

@@ -69,7 +69,7 @@ pub struct Synthesizer {
     /// Steps since the target was set, and what the time since then is more than these.
     steps: u64,
     late_secs: f64,
-    /// Before joint limits.
+    /// Before joint limits; the height's velocity without that of what is followed, which is costly and seldom needed.
     now: Moving,
     command: Command,
 }
@@ -168,7 +168,12 @@ impl Synthesizer {
             goal.velocities[self.body.dof()] = height_slope * rate;
             goal
         };
-        let join = if Offset::between(&now, &place(natural), 1.0, 1.0).is_none() {
+        // What it would run at with nothing to join: if it were then in step with the body, there is nothing to join.
+        let direct = match manner.pace {
+            Pace::Times(speed) => speed,
+            Pace::Secs(secs) => left_secs / secs,
+        };
+        let join = if Offset::between(&now, &place(direct), 1.0, 1.0).is_none() {
             0.0
         } else {
             self.settings.secs(&now, &place(0.0), &self.parts)
@@ -203,6 +208,7 @@ impl Synthesizer {
             clock,
         };
         (self.steps, self.late_secs) = (0, 0.0);
+        now.velocities[self.body.dof()] -= goal.velocities[self.body.dof()];
         self.now = now;
         if renamed {
             let acceleration = self.command.acceleration.clone();
@@ -228,6 +234,14 @@ impl Synthesizer {
             let cycle = course.duration_secs() / *speed;
             let least = clock.at(t).0.max(clock.blend).max(cycle);
             clock.whole = clock.whole.min((least / cycle).ceil() * cycle);
+        }
+    }
+
+    /// Seconds until the course has come to its end: 0 when it has, infinite for a cyclic one that goes on and on.
+    pub fn remaining_secs(&self) -> f64 {
+        match &self.target {
+            Target::Posture(_) => 0.0,
+            Target::Course { clock, .. } => (clock.end() - self.elapsed_secs()).max(0.0),
         }
     }
 

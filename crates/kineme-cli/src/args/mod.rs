@@ -1,5 +1,12 @@
 //! The command line, as clap reads it and as `--help` teaches it.
 
+mod model;
+
+pub use model::{
+    ChoreographArgs, EditArgs, InterpolationName, LearnArgs, Merging, ModelArgs, Parameters,
+    Renaming, ShowArgs, SynthesizeArgs, Target,
+};
+
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -12,6 +19,10 @@ Examples:
   kineme info captures/                           what is in a folder, file by file
   kineme derive captures/ -o walk.kineme --report walk
                                                   find the movements in it, and look at them
+  kineme learn labels.csv -o moves.kineme         or say which movement is which
+  kineme show moves.kineme                        what the primitives are, and how good
+  kineme synthesize moves.kineme jab -o jab.bvh --reach right_hand=0.5,0.1,0.2
+                                                  a motion of one, aimed
   kineme convert take.amc take.bvh                another format, nothing lost
 
 Exit codes: 0 done, 1 the work failed, 2 usage, 3 an input cannot be read.";
@@ -19,7 +30,8 @@ Exit codes: 0 done, 1 the work failed, 2 usage, 3 an input cannot be read.";
 /// Motor primitives from motion capture.
 ///
 /// Motion capture in, a vocabulary of motor primitives out: recordings are cut into movements, movements that are
-/// alike are found, and each kind becomes a primitive with its exemplars.
+/// alike are found, or labelled by hand, and each kind becomes a primitive: a movement that can be shown, varied by its
+/// parameters, aimed at a point, and synthesized.
 #[derive(Debug, Parser)]
 #[command(name = "kineme", version, after_help = EXAMPLES, arg_required_else_help = true)]
 pub struct Cli {
@@ -52,6 +64,11 @@ pub enum Command {
     Info(InfoArgs),
     Convert(ConvertArgs),
     Derive(Box<DeriveArgs>),
+    Learn(Box<LearnArgs>),
+    Choreograph(Box<ChoreographArgs>),
+    Show(ShowArgs),
+    Edit(Box<EditArgs>),
+    Synthesize(Box<SynthesizeArgs>),
     Demo(DemoArgs),
 }
 
@@ -92,7 +109,7 @@ pub struct InfoArgs {
     pub read: ReadArgs,
 }
 
-/// A format that `convert` writes.
+/// A format of motion that is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Written {
     /// Biovision hierarchy: a skeleton and its rotations

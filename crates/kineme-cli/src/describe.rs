@@ -1,0 +1,483 @@
+//! What there is to know of a vocabulary, for people and for scripts.
+
+use kineme::interpolation::Method;
+use kineme::primitive::{LeaveOneOut, ParameterSource, Trial};
+use kineme::{Exemplar, Primitive, Vocabulary};
+use serde::Serialize;
+
+use crate::args::Global;
+use crate::failure::Failure;
+use crate::table::{Side, aligned};
+
+/// The whole vocabulary: the document of `--json`, else tables.
+pub fn all(vocabulary: &Vocabulary, name: &str, global: &Global) -> Result<String, Failure> {
+    let primitives: Vec<&Primitive> = vocabulary.primitives().iter().collect();
+    if global.json {
+        document(vocabulary, &primitives)
+    } else {
+        Ok(tables(vocabulary, name))
+    }
+}
+
+/// One primitive: the same document of it alone, else all there is to tell.
+pub fn one(
+    vocabulary: &Vocabulary,
+    primitive: &Primitive,
+    global: &Global,
+) -> Result<String, Failure> {
+    if global.json {
+        document(vocabulary, &[primitive])
+    } else {
+        Ok(details(primitive))
+    }
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    body: &'a str,
+    dof: usize,
+    primitives: Vec<PrimitiveLine<'a>>,
+    behaviors: Vec<BehaviorLine<'a>>,
+    transitions: Vec<TransitionLine<'a>>,
+}
+
+#[derive(Serialize)]
+struct PrimitiveLine<'a> {
+    name: &'a str,
+    cyclic: bool,
+    /// Shortest and longest exemplar, seconds.
+    duration: [f64; 2],
+    parameters: Vec<ParameterLine<'a>>,
+    /// `adverbs`, `principal`, or the effector whose place they are.
+    parameters_from: &'a str,
+    interpolation: MethodLine,
+    trials: Vec<TrialLine>,
+    leave_one_out: Option<ErrorLine>,
+    members: Option<usize>,
+    coherence: Option<f64>,
+    exemplars: Vec<ExemplarLine<'a>>,
+    notes: Vec<&'a str>,
+}
+
+#[derive(Serialize)]
+struct ParameterLine<'a> {
+    name: &'a str,
+    low: f64,
+    high: f64,
+}
+
+#[derive(Serialize)]
+struct MethodLine {
+    method: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    power: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    nugget: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct TrialLine {
+    #[serde(flatten)]
+    method: MethodLine,
+    parameters: usize,
+    error_m: f64,
+}
+
+/// Errors of exemplars predicted from the others; those in `_m` but the wrists' are of landmarks all over the body.
+#[derive(Serialize)]
+struct ErrorLine {
+    joint_rad: f64,
+    wrist_m: f64,
+    error_m: Option<f64>,
+    nearest_m: f64,
+    mean_m: f64,
+}
+
+#[derive(Serialize)]
+struct ExemplarLine<'a> {
+    motion: &'a str,
+    start: f64,
+    end: f64,
+    blake3: Option<&'a str>,
+    adverbs: Option<&'a [f64]>,
+    /// In the parameters' own units.
+    parameters: Vec<f64>,
+}
+
+#[derive(Serialize)]
+struct BehaviorLine<'a> {
+    name: &'a str,
+    primitives: &'a [String],
+}
+
+#[derive(Serialize)]
+struct TransitionLine<'a> {
+    from: &'a str,
+    to: &'a str,
+    count: u32,
+}
+
+fn document(vocabulary: &Vocabulary, primitives: &[&Primitive]) -> Result<String, Failure> {
+    let shown = |name: &str| primitives.iter().any(|p| p.name() == name);
+    let all = vocabulary.primitives();
+    let transitions = vocabulary.transitions();
+    let pairs = (0..all.len()).flat_map(|from| (0..all.len()).map(move |to| (from, to)));
+    let document = Document {
+        body: vocabulary.body().name(),
+        dof: vocabulary.body().dof(),
+        primitives: primitives.iter().map(|p| line(p)).collect(),
+        behaviors: vocabulary
+            .behaviors()
+            .iter()
+            .filter(|b| b.primitives.iter().any(|p| shown(p)))
+            .map(|b| BehaviorLine {
+                name: &b.name,
+                primitives: &b.primitives,
+            })
+            .collect(),
+        transitions: pairs
+            .map(|(from, to)| TransitionLine {
+                from: all[from].name(),
+                to: all[to].name(),
+                count: transitions.count(from, to),
+            })
+            .filter(|t| t.count > 0 && (shown(t.from) || shown(t.to)))
+            .collect(),
+    };
+    let text = serde_json::to_string(&document).map_err(|e| Failure::failed(e.to_string()))?;
+    Ok(format!("{text}\n"))
+}
+
+fn line(primitive: &Primitive) -> PrimitiveLine<'_> {
+    let fit = primitive.fitted();
+    let space = primitive.parameters();
+    let exemplars = primitive.exemplars().iter().enumerate();
+    PrimitiveLine {
+        name: primitive.name(),
+        cyclic: primitive.is_cyclic(),
+        duration: durations(primitive),
+        parameters: space
+            .axes()
+            .iter()
+            .map(|a| ParameterLine {
+                name: &a.name,
+                low: a.low,
+                high: a.high,
+            })
+            .collect(),
+        parameters_from: match space.source() {
+            ParameterSource::Adverbs => "adverbs",
+            ParameterSource::Principal { .. } => "principal",
+            ParameterSource::Effector { effector, .. } => effector,
+        },
+        interpolation: method_line(&fit.method),
+        trials: fit
+            .trials
+            .iter()
+            .map(|t| TrialLine {
+                method: method_line(&t.method),
+                parameters: t.dims,
+                error_m: t.error_m,
+            })
+            .collect(),
+        leave_one_out: fit.error.as_ref().map(|e| ErrorLine {
+            joint_rad: e.joint_rad,
+            wrist_m: e.wrist_m,
+            error_m: fit.trials.first().map(|t| t.error_m),
+            nearest_m: e.nearest_m,
+            mean_m: e.mean_m,
+        }),
+        members: primitive.group().map(|g| g.members),
+        coherence: primitive.group().and_then(|g| g.coherence),
+        exemplars: exemplars
+            .map(|(i, e)| ExemplarLine {
+                motion: &e.provenance.motion,
+                start: e.provenance.start_secs,
+                end: e.provenance.end_secs,
+                blake3: e.provenance.blake3.as_deref(),
+                adverbs: e.adverbs.as_deref(),
+                parameters: space.from_unit(primitive.point(i)),
+            })
+            .collect(),
+        notes: primitive.notes().collect(),
+    }
+}
+
+fn method_line(method: &Method) -> MethodLine {
+    match *method {
+        Method::Shepard { power } => MethodLine {
+            method: "shepard",
+            power: Some(power),
+            nugget: None,
+        },
+        Method::Cardinal { nugget, .. } => MethodLine {
+            method: "verbs-and-adverbs",
+            power: None,
+            nugget: Some(nugget),
+        },
+    }
+}
+
+/// A method in words: what `--interpolation` calls it, and what it was smoothed by.
+fn method_name(method: &Method) -> String {
+    match *method {
+        Method::Shepard { power } => format!("shepard, power {}", short(power)),
+        Method::Cardinal { nugget: 0.0, .. } => "verbs-and-adverbs".into(),
+        Method::Cardinal { nugget, .. } => format!("verbs-and-adverbs, nugget {}", short(nugget)),
+    }
+}
+
+/// Seconds that the shortest and the longest exemplar take; of cycles, one of them.
+fn durations(primitive: &Primitive) -> [f64; 2] {
+    let pairs = primitive.exemplars().iter().zip(&primitive.fitted().used);
+    pairs
+        .map(|(e, used)| (used.end - used.start) / e.motion.rate_hz())
+        .fold([f64::INFINITY, 0.0], |[low, high], secs| {
+            [low.min(secs), high.max(secs)]
+        })
+}
+
+/// A number in as few digits as tell people enough.
+pub fn short(value: f64) -> String {
+    let digits = if value.abs() < 10.0 { 3 } else { 1 };
+    let text = format!("{value:.digits$}");
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &text
+    };
+    if text == "-0" { "0".into() } else { text.into() }
+}
+
+fn range(low: f64, high: f64) -> String {
+    let (low, high) = (format!("{low:.2}"), format!("{high:.2}"));
+    if low == high { low } else { format!("{low}-{high}") }
+}
+
+fn kind(primitive: &Primitive) -> String {
+    if primitive.is_cyclic() { "cycle" } else { "stroke" }.into()
+}
+
+/// The parameters with their ranges, as `--at` takes them.
+fn parameters(primitive: &Primitive) -> String {
+    let axes = primitive.parameters().axes().iter();
+    let told: Vec<String> = axes
+        .map(|a| format!("{} {} to {}", a.name, short(a.low), short(a.high)))
+        .collect();
+    if told.is_empty() {
+        "-".into()
+    } else {
+        told.join(", ")
+    }
+}
+
+fn cm(metres: f64) -> String {
+    format!("{:.1}", 100.0 * metres)
+}
+
+fn degrees(radians: f64) -> String {
+    format!("{:.1}", radians.to_degrees())
+}
+
+fn tables(vocabulary: &Vocabulary, name: &str) -> String {
+    let primitives = vocabulary.primitives();
+    let exemplars: usize = primitives.iter().map(|p| p.exemplars().len()).sum();
+    let derived = primitives.iter().any(|p| p.group().is_some());
+    let mut text = format!(
+        "{name}: {} of {exemplars} exemplars, body {}\n\n",
+        counted(primitives.len(), "primitive"),
+        vocabulary.body().name()
+    );
+    let mut header = vec![
+        ("primitive", Side::Left),
+        ("exemplars", Side::Right),
+        ("seconds", Side::Right),
+        ("kind", Side::Left),
+    ];
+    if derived {
+        header.extend([("members", Side::Right), ("coherence", Side::Right)]);
+    }
+    header.push(("parameters", Side::Left));
+    let rows: Vec<Vec<String>> = primitives
+        .iter()
+        .map(|p| {
+            let [shortest, longest] = durations(p);
+            let mut row = vec![
+                p.name().into(),
+                p.exemplars().len().to_string(),
+                range(shortest, longest),
+                kind(p),
+            ];
+            if derived {
+                let group = p.group();
+                row.push(group.map_or("-".into(), |g| g.members.to_string()));
+                let coherence = group.and_then(|g| g.coherence);
+                row.push(coherence.map_or("-".into(), |c| format!("{c:.2}")));
+            }
+            row.push(parameters(p));
+            row
+        })
+        .collect();
+    text.push_str(&aligned(&header, &rows));
+    text.push('\n');
+    text.push_str(&judged(primitives));
+    text.push_str(&behaviors(vocabulary));
+    let notes: usize = primitives.iter().map(|p| p.notes().count()).sum();
+    if notes > 0 {
+        text.push_str(&format!(
+            "\n{} on single primitives: `kineme show {name} PRIMITIVE`\n",
+            counted(notes, "note")
+        ));
+    }
+    text
+}
+
+/// How exemplars are predicted from the others.
+fn judged(primitives: &[Primitive]) -> String {
+    let header = [
+        ("each exemplar from the others", Side::Left),
+        ("joints deg", Side::Right),
+        ("wrists cm", Side::Right),
+        ("body cm", Side::Right),
+        ("nearest", Side::Right),
+        ("mean", Side::Right),
+        ("by", Side::Left),
+    ];
+    let rows: Vec<Vec<String>> = primitives
+        .iter()
+        .map(|p| {
+            let fit = p.fitted();
+            let mut row = vec![p.name().to_owned()];
+            match (&fit.error, fit.trials.first()) {
+                (Some(e), Some(t)) => row.extend([
+                    degrees(e.joint_rad),
+                    cm(e.wrist_m),
+                    cm(t.error_m),
+                    cm(e.nearest_m),
+                    cm(e.mean_m),
+                ]),
+                _ => row.extend(std::iter::repeat_n("-".to_owned(), 5)),
+            }
+            row.push(method_name(&fit.method));
+            row
+        })
+        .collect();
+    aligned(&header, &rows)
+}
+
+/// Behaviors of several primitives.
+fn behaviors(vocabulary: &Vocabulary) -> String {
+    let several = vocabulary.behaviors().iter();
+    let rows: Vec<Vec<String>> = several
+        .filter(|b| b.primitives.len() > 1)
+        .map(|b| vec![b.name.clone(), b.primitives.join(" ")])
+        .collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    let header = [("behavior", Side::Left), ("primitives", Side::Left)];
+    format!("\n{}", aligned(&header, &rows))
+}
+
+fn counted(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+/// All there is to tell of a primitive.
+fn details(primitive: &Primitive) -> String {
+    let fit = primitive.fitted();
+    let [shortest, longest] = durations(primitive);
+    let n = primitive.exemplars().len();
+    let mut text = format!(
+        "{}: a {} of {} s, {} on {}\n",
+        primitive.name(),
+        kind(primitive),
+        range(shortest, longest),
+        counted(n, "exemplar"),
+        primitive.body().name()
+    );
+    if let Some(group) = primitive.group() {
+        let coherence = group.coherence.map(|c| format!(", coherence {c:.2}"));
+        text.push_str(&format!(
+            "derived from a group of {}{}\n",
+            counted(group.members, "segment"),
+            coherence.unwrap_or_default()
+        ));
+    }
+    text.push_str(&format!(
+        "parameters: {} ({})\n",
+        parameters(primitive),
+        match primitive.parameters().source() {
+            _ if primitive.parameters().dims() == 0 => "it always looks the same".into(),
+            ParameterSource::Adverbs => "adverbs, as they were given".into(),
+            ParameterSource::Principal { .. } =>
+                "the directions in which the exemplars vary most".into(),
+            ParameterSource::Effector { effector, .. } => format!(
+                "where {effector} is at its extreme, metres from between the shoulders"
+            ),
+        }
+    ));
+    text.push_str(&format!("interpolation: {}\n", method_name(&fit.method)));
+    if let Some(error) = &fit.error {
+        text.push('\n');
+        text.push_str(&predicted(error, &fit.trials));
+    }
+    text.push('\n');
+    text.push_str(&sources(primitive));
+    for note in primitive.notes() {
+        text.push_str(&format!("note: {note}\n"));
+    }
+    text
+}
+
+/// What was tried, and how well it predicts.
+fn predicted(error: &LeaveOneOut, trials: &[Trial]) -> String {
+    let mut rows: Vec<Vec<String>> = trials
+        .iter()
+        .enumerate()
+        .map(|(i, t)| {
+            let chosen = if i == 0 { "  <- chosen" } else { "" };
+            let name = format!("{} of {}", method_name(&t.method), counted(t.dims, "parameter"));
+            vec![name, format!("{}{chosen}", cm(t.error_m))]
+        })
+        .collect();
+    rows.push(vec!["the nearest exemplar".into(), cm(error.nearest_m)]);
+    rows.push(vec!["the mean of the others".into(), cm(error.mean_m)]);
+    let header = [
+        ("each exemplar from the others, by", Side::Left),
+        ("body cm", Side::Left),
+    ];
+    format!(
+        "{}of the chosen one: joints {} degrees, wrists {} cm. The exact one is kept unless another is better by 2 %.\n",
+        aligned(&header, &rows),
+        degrees(error.joint_rad),
+        cm(error.wrist_m)
+    )
+}
+
+/// The exemplars, where they come from and where they lie.
+fn sources(primitive: &Primitive) -> String {
+    let axes = primitive.parameters().axes();
+    let mut header = vec![
+        ("exemplar", Side::Left),
+        ("start", Side::Right),
+        ("end", Side::Right),
+        ("blake3", Side::Left),
+    ];
+    header.extend(axes.iter().map(|a| (a.name.as_str(), Side::Right)));
+    let row = |(i, e): (usize, &Exemplar)| {
+        let from = &e.provenance;
+        let hash = from.blake3.as_deref().and_then(|h| h.get(..8));
+        let mut row = vec![
+            from.motion.clone(),
+            format!("{:.2}", from.start_secs),
+            format!("{:.2}", from.end_secs),
+            hash.unwrap_or("-").to_owned(),
+        ];
+        let values = primitive.parameters().from_unit(primitive.point(i));
+        row.extend(values.into_iter().map(short));
+        row
+    };
+    let rows: Vec<Vec<String>> = primitive.exemplars().iter().enumerate().map(row).collect();
+    aligned(&header, &rows)
+}
