@@ -97,10 +97,7 @@ impl<T> Read<T> {
         if self.failures.is_empty() {
             return 0;
         }
-        complain(&format!(
-            "skipped {} of {} motions",
-            self.skipped, self.of
-        ));
+        complain(&format!("skipped {} of {} motions", self.skipped, self.of));
         crate::failure::UNREADABLE
     }
 }
@@ -149,7 +146,12 @@ impl Source {
                 }
                 found[i] = Some(here.unwrap_or_else(|| {
                     let expected = "one motion";
-                    Err(FormatError::new(&*name, Place::File, "a folder or an archive", expected))
+                    Err(FormatError::new(
+                        &*name,
+                        Place::File,
+                        "a folder or an archive",
+                        expected,
+                    ))
                 }));
             }
         }
