@@ -10,7 +10,7 @@ use kineme_paper::interpolation_table::write_interpolation;
 use kineme_paper::intervals::interval;
 use kineme_paper::model_table::left_out;
 use kineme_paper::models::{Fold, Judged, folds};
-use kineme_paper::out_and_back::{follow_waves, waves};
+use kineme_paper::out_and_back::{Return, follow_waves, waves};
 use kineme_paper::postures::{Errors, Postures};
 use kineme_paper::sets::{LabelledSet, index, load};
 
@@ -97,26 +97,31 @@ fn small_classes_are_listed_and_not_averaged() {
 
 #[test]
 fn waves_go_out_and_come_back() {
-    let waves = waves().expect("waves");
-    assert_eq!(waves.len(), 9);
-    for wave in &waves {
-        let m = &wave.motion;
-        let (first, last) = (m.pose(0), m.pose(m.frames() - 1));
-        let gap = |a: &[f64], b: &[f64]| -> f64 {
-            let pairs = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
-            pairs.sum::<f64>().sqrt()
-        };
-        let most = (0..m.frames())
-            .map(|f| gap(m.pose(f), first))
-            .fold(0.0, f64::max);
-        assert!(gap(first, last) < 0.35 * most, "{:?}", wave.adverbs);
+    for back in [Return::Choreographed, Return::Reversed] {
+        let waves = waves(back).expect("waves");
+        assert_eq!(waves.len(), 9);
+        for wave in &waves {
+            let m = &wave.motion;
+            let last = m.frames() - 1;
+            let gap = |a: usize, b: usize| -> f64 {
+                let pairs = m.pose(a).iter().zip(m.pose(b));
+                pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+            };
+            let most = (0..m.frames()).map(|f| gap(f, 0)).fold(0.0, f64::max);
+            assert!(gap(0, last) < 0.05 * most, "{back:?} {:?}", wave.adverbs);
+            if back == Return::Reversed {
+                assert!(gap(last / 4, last - last / 4) < 0.05 * most);
+            }
+        }
     }
 }
 
 #[test]
 fn a_field_with_phase_completes_every_wave() {
-    let phase = follow_waves(Memory::Phase).expect("followed");
+    let phase = follow_waves(Return::Reversed, Memory::Phase).expect("followed");
     assert_eq!(phase.completed, phase.followed, "{phase:?}");
+    let paper = follow_waves(Return::Reversed, Memory::None).expect("followed");
+    assert!(paper.completed < paper.followed, "{paper:?}");
 }
 
 fn corpus() -> Option<PathBuf> {
