@@ -46,7 +46,10 @@ pub fn run(args: &ChoreographArgs, global: &Global) -> Result<u8, Failure> {
     }
     let body = body(args.body.as_deref().unwrap_or(&script.body))?;
     let performed = performed(&script, &shown, &body, args.rate)?;
-    let paths = args.motions.as_deref().map(|folder| files(&performed, folder));
+    let paths = args
+        .motions
+        .as_deref()
+        .map(|folder| files(&performed, folder));
     if let Some(paths) = &paths {
         refuse_existing(paths.iter().map(PathBuf::as_path), global)?;
     }
@@ -108,7 +111,9 @@ fn performed(
             primitive: Some(exemplar.primitive.clone()),
             motion: perform(&format!("{shown}/{name}"), &exemplar.keys, body, rate_hz)?,
             name,
-            adverbs: adverbs.map(|(name, value)| (name.clone(), *value)).collect(),
+            adverbs: adverbs
+                .map(|(name, value)| (name.clone(), *value))
+                .collect(),
         });
     }
     for animation in &script.animations {

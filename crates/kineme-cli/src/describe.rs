@@ -246,16 +246,29 @@ pub fn short(value: f64) -> String {
     } else {
         &text
     };
-    if text == "-0" { "0".into() } else { text.into() }
+    if text == "-0" {
+        "0".into()
+    } else {
+        text.into()
+    }
 }
 
 fn range(low: f64, high: f64) -> String {
     let (low, high) = (format!("{low:.2}"), format!("{high:.2}"));
-    if low == high { low } else { format!("{low}-{high}") }
+    if low == high {
+        low
+    } else {
+        format!("{low}-{high}")
+    }
 }
 
 fn kind(primitive: &Primitive) -> String {
-    if primitive.is_cyclic() { "cycle" } else { "stroke" }.into()
+    if primitive.is_cyclic() {
+        "cycle"
+    } else {
+        "stroke"
+    }
+    .into()
 }
 
 /// The parameters with their ranges, as `--at` takes them.
@@ -339,8 +352,8 @@ fn judged(primitives: &[Primitive]) -> String {
         ("joints deg", Side::Right),
         ("wrists cm", Side::Right),
         ("body cm", Side::Right),
-        ("nearest", Side::Right),
-        ("mean", Side::Right),
+        ("nearest cm", Side::Right),
+        ("mean cm", Side::Right),
         ("by", Side::Left),
     ];
     let rows: Vec<Vec<String>> = primitives
@@ -362,7 +375,10 @@ fn judged(primitives: &[Primitive]) -> String {
             row
         })
         .collect();
-    aligned(&header, &rows)
+    format!(
+        "{}body: joints all over it, root mean square; nearest and mean: what the nearest exemplar or the mean would give\n",
+        aligned(&header, &rows)
+    )
 }
 
 /// Behaviors of several primitives.
@@ -412,9 +428,8 @@ fn details(primitive: &Primitive) -> String {
             ParameterSource::Adverbs => "adverbs, as they were given".into(),
             ParameterSource::Principal { .. } =>
                 "the directions in which the exemplars vary most".into(),
-            ParameterSource::Effector { effector, .. } => format!(
-                "where {effector} is at its extreme, metres from between the shoulders"
-            ),
+            ParameterSource::Effector { effector, .. } =>
+                format!("where {effector} is at its extreme, metres from between the shoulders"),
         }
     ));
     text.push_str(&format!("interpolation: {}\n", method_name(&fit.method)));
@@ -437,7 +452,11 @@ fn predicted(error: &LeaveOneOut, trials: &[Trial]) -> String {
         .enumerate()
         .map(|(i, t)| {
             let chosen = if i == 0 { "  <- chosen" } else { "" };
-            let name = format!("{} of {}", method_name(&t.method), counted(t.dims, "parameter"));
+            let name = format!(
+                "{} of {}",
+                method_name(&t.method),
+                counted(t.dims, "parameter")
+            );
             vec![name, format!("{}{chosen}", cm(t.error_m))]
         })
         .collect();
@@ -448,7 +467,8 @@ fn predicted(error: &LeaveOneOut, trials: &[Trial]) -> String {
         ("body cm", Side::Left),
     ];
     format!(
-        "{}of the chosen one: joints {} degrees, wrists {} cm. The exact one is kept unless another is better by 2 %.\n",
+        "{}The chosen one errs by {} degrees a joint and {} cm at the wrists. What passes through every exemplar is kept\n\
+         unless another is better by 2 %.\n",
         aligned(&header, &rows),
         degrees(error.joint_rad),
         cm(error.wrist_m)

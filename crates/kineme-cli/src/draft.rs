@@ -69,7 +69,13 @@ impl Draft {
         let primitives = std::mem::take(&mut self.primitives);
         let pairs = primitives.into_iter().zip(names);
         self.primitives = pairs
-            .map(|(p, name)| if p.name() == name { p } else { p.renamed(&name) })
+            .map(|(p, name)| {
+                if p.name() == name {
+                    p
+                } else {
+                    p.renamed(&name)
+                }
+            })
             .collect();
         self.settle_behaviors();
         Ok(())
@@ -92,9 +98,12 @@ impl Draft {
             }
         }
         self.primitives[first] = merged;
-        self.keep(|i| i == first || !places.contains(&i), |i| {
-            if places.contains(&i) { first } else { i }
-        });
+        self.keep(
+            |i| i == first || !places.contains(&i),
+            |i| {
+                if places.contains(&i) { first } else { i }
+            },
+        );
     }
 
     /// Drops the primitives at `places`.
@@ -177,7 +186,8 @@ impl Draft {
             .map(|b| b.name.clone())
             .collect();
         for i in 0..self.behaviors.len() {
-            while self.behaviors[i].primitives.len() > 1 && alone.contains(&self.behaviors[i].name) {
+            while self.behaviors[i].primitives.len() > 1 && alone.contains(&self.behaviors[i].name)
+            {
                 self.behaviors[i].name.push('+');
             }
         }

@@ -46,7 +46,10 @@ pub fn run(args: &EditArgs, global: &Global) -> Result<u8, Failure> {
     check_cyclic(&args.model, &modelled)?;
     let vocabulary = editor.draft.finished()?;
     let changed = vocabulary.primitives().iter();
-    print_notes(changed.filter(|p| editor.modelled.iter().any(|m| m == p.name())), false);
+    print_notes(
+        changed.filter(|p| editor.modelled.iter().any(|m| m == p.name())),
+        false,
+    );
     let told = describe::all(&vocabulary, &args.out.display().to_string(), global)?;
     vocabularies::write(&vocabulary, &args.out, &told, global)?;
     let count = editor.left_out.len();
@@ -173,7 +176,8 @@ impl Editor<'_> {
             let before = lesson.exemplars.len();
             for example in examples.iter().filter(|e| e.label == label) {
                 let new = &example.exemplar;
-                let same = |e: &Exemplar| e.provenance == new.provenance && e.adverbs == new.adverbs;
+                let same =
+                    |e: &Exemplar| e.provenance == new.provenance && e.adverbs == new.adverbs;
                 if lesson.exemplars.iter().any(same) {
                     again += 1;
                     continue;
@@ -250,7 +254,11 @@ fn adverb_names(primitive: &Primitive) -> Vec<String> {
         .collect();
     let count = rows.first().map_or(0, |row| row.len());
     let from_adverbs = *primitive.parameters().source() == ParameterSource::Adverbs;
-    let mut named = primitive.parameters().axes().iter().filter(|_| from_adverbs);
+    let mut named = primitive
+        .parameters()
+        .axes()
+        .iter()
+        .filter(|_| from_adverbs);
     let varies = |d: usize| rows.iter().any(|row| row[d] != rows[0][d]);
     (0..count)
         .map(|d| {

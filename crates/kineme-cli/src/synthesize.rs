@@ -119,12 +119,16 @@ pub fn run(args: &SynthesizeArgs, global: &Global) -> Result<u8, Failure> {
         primitive: primitive.name(),
         parameters: &parameters,
         phase: reached.as_ref().map(|r| r.phase),
-        reach: args.reach.as_ref().zip(reached.as_ref()).map(|(t, r)| Aimed {
-            effector: &t.effector,
-            target: t.place,
-            position: r.position.into(),
-            miss: r.miss_m,
-        }),
+        reach: args
+            .reach
+            .as_ref()
+            .zip(reached.as_ref())
+            .map(|(t, r)| Aimed {
+                effector: &t.effector,
+                target: t.place,
+                position: r.position.into(),
+                miss: r.miss_m,
+            }),
         duration: motion.duration_secs(),
         frames: motion.frames(),
         rate: motion.rate_hz(),
@@ -160,7 +164,9 @@ fn text(
 /// `height 0.5, side 0.2`.
 fn named(primitive: &Primitive, parameters: &[f64]) -> String {
     let axes = primitive.parameters().axes().iter().zip(parameters);
-    let told: Vec<String> = axes.map(|(a, v)| format!("{} {}", a.name, short(*v))).collect();
+    let told: Vec<String> = axes
+        .map(|(a, v)| format!("{} {}", a.name, short(*v)))
+        .collect();
     told.join(", ")
 }
 
@@ -170,7 +176,10 @@ fn format(args: &SynthesizeArgs) -> Result<Written, Failure> {
     }
     let message = match args.out.to_str() {
         Some("-") => "stdout says no format".into(),
-        _ => format!("`{}` says no format that can be written", args.out.display()),
+        _ => format!(
+            "`{}` says no format that can be written",
+            args.out.display()
+        ),
     };
     Err(Failure::usage(message)
         .hint("write .bvh, .csv or .npz, or say --to bvh, --to csv or --to npz"))
@@ -202,7 +211,11 @@ fn tell_reached(primitive: &Primitive, target: &Target, reached: &Reached, param
         reached.phase,
         100.0 * reached.miss_m,
         place(&target.place),
-        if far { "; nearer its exemplars do not lead" } else { "" }
+        if far {
+            "; its exemplars lead no nearer"
+        } else {
+            ""
+        }
     ));
 }
 

@@ -90,7 +90,9 @@ pub fn modelling(args: &ModelArgs, body: &Skeleton) -> Result<Modelling, Failure
         Some(Parameters::Principal) => Parameterisation::Principal,
         Some(Parameters::Effector(name)) => {
             body.effector(name).map_err(|e| {
-                Failure::usage(format!("--parameters automatic, principal or an effector: {e}"))
+                Failure::usage(format!(
+                    "--parameters automatic, principal or an effector: {e}"
+                ))
             })?;
             Parameterisation::Effector(name.clone())
         }
@@ -137,10 +139,18 @@ pub struct Learned {
 
 impl Lesson {
     fn learn(self) -> Result<Learned, Failure> {
-        let given: Vec<Provenance> = self.exemplars.iter().map(|e| e.provenance.clone()).collect();
+        let given: Vec<Provenance> = self
+            .exemplars
+            .iter()
+            .map(|e| e.provenance.clone())
+            .collect();
         let labels: Vec<String> = self.exemplars.iter().map(Exemplar::label).collect();
         let primitive = Primitive::learn(&self.name, self.exemplars, &self.modelling)?;
-        let mut kept = primitive.exemplars().iter().map(|e| &e.provenance).peekable();
+        let mut kept = primitive
+            .exemplars()
+            .iter()
+            .map(|e| &e.provenance)
+            .peekable();
         let mut left_out = Vec::new();
         for ((given, label), place) in given.iter().zip(labels).zip(self.places) {
             if kept.next_if_eq(&given).is_some() {
@@ -157,13 +167,19 @@ impl Lesson {
                 None => failure,
             });
         }
-        Ok(Learned { primitive, left_out })
+        Ok(Learned {
+            primitive,
+            left_out,
+        })
     }
 }
 
 /// Makes primitives, in order, on all threads. An exemplar of another structure than the others ends the run, or is
 /// left out and told in the second list.
-pub fn learn(lessons: Vec<Lesson>, keep_going: bool) -> Result<(Vec<Primitive>, Vec<Failure>), Failure> {
+pub fn learn(
+    lessons: Vec<Lesson>,
+    keep_going: bool,
+) -> Result<(Vec<Primitive>, Vec<Failure>), Failure> {
     let bar = progress::bar(lessons.len(), "modelling");
     let learned: Vec<Result<Learned, Failure>> = lessons
         .into_par_iter()
