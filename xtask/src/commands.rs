@@ -160,21 +160,38 @@ fn seconds(time: Duration) -> String {
     format!("{:.1} s", time.as_secs_f64())
 }
 
-/// The line of `docs/derivation.md` below which the tables stand.
+/// The line below which the tables of a document stand.
 const TABLES: &str = "<!-- tables: cargo xtask repro -->";
+/// Documents with tables, and the examples of `kineme-paper` that print them.
+const REPRODUCED: [(&str, &str); 2] = [
+    ("docs/derivation.md", "derivation_table"),
+    ("docs/model.md", "model_table"),
+];
 
-/// Computes the tables of `docs/derivation.md` again and puts them below its mark.
+/// Computes the tables of the documents again and puts them below their marks.
 pub fn repro(root: &Path, corpus: Option<&Path>) -> Result<(), String> {
     let corpus = match (corpus, std::env::var_os("KINEME_DATA")) {
         (Some(given), _) => given.to_path_buf(),
         (None, Some(data)) => Path::new(&data).join("mocap"),
         (None, None) => root.join("../shared/data/mocap"),
     };
-    let page = root.join("docs/derivation.md");
-    let text = std::fs::read_to_string(&page).map_err(|e| format!("{}: {e}", page.display()))?;
-    let (above, _) = text
-        .split_once(TABLES)
-        .ok_or_else(|| format!("{}: no line `{TABLES}`", page.display()))?;
+    for (document, example) in REPRODUCED {
+        let page = root.join(document);
+        let text =
+            std::fs::read_to_string(&page).map_err(|e| format!("{}: {e}", page.display()))?;
+        let (above, _) = text
+            .split_once(TABLES)
+            .ok_or_else(|| format!("{}: no line `{TABLES}`", page.display()))?;
+        let tables = tables(root, example, &corpus)?;
+        std::fs::write(&page, format!("{above}{TABLES}\n{tables}"))
+            .map_err(|e| format!("{}: {e}", page.display()))?;
+        println!("{} is up to date", page.display());
+    }
+    Ok(())
+}
+
+/// What an example of `kineme-paper` prints of a corpus.
+fn tables(root: &Path, example: &str, corpus: &Path) -> Result<String, String> {
     let mut command = Command::new("cargo");
     command.current_dir(root).args([
         "run",
@@ -183,22 +200,18 @@ pub fn repro(root: &Path, corpus: Option<&Path>) -> Result<(), String> {
         "--package",
         "kineme-paper",
         "--example",
-        "derivation_table",
+        example,
         "--",
     ]);
     let output = command
-        .arg(&corpus)
-        .stderr(std::process::Stdio::inherit())
+        .arg(corpus)
+        .stderr(Stdio::inherit())
         .output()
         .map_err(|e| format!("cargo: {e}"))?;
     if !output.status.success() {
         return Err(format!("no tables from {}", corpus.display()));
     }
-    let tables = String::from_utf8_lossy(&output.stdout);
-    std::fs::write(&page, format!("{above}{TABLES}\n{tables}"))
-        .map_err(|e| format!("{}: {e}", page.display()))?;
-    println!("{} is up to date", page.display());
-    Ok(())
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 #[cfg(test)]
