@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use kineme::derivation::{Clustering, Cut, Derivation, Derived, Mark, SecondLevel, Stage};
 use kineme::segmentation::Segmenter;
-use kineme::{Modelling, Motion};
+use kineme::{Modelling, Motion, Vocabulary};
 use kineme_formats::input::Entry;
 use kineme_formats::{FormatError, Place, marks, output, vocabulary};
 use kineme_paper::figures::{Report, summary};
@@ -16,6 +16,7 @@ use crate::findings::{self, Seconds};
 use crate::outputs::{existing, refuse_existing, unwritten};
 use crate::progress;
 use crate::source::{Source, body, print_warnings};
+use crate::vocabularies::print_notes;
 
 /// A motion of the body, and where it came from.
 struct Taken {
@@ -72,6 +73,12 @@ pub fn run(args: &DeriveArgs, global: &Global) -> Result<u8, Failure> {
     }
     let mut clock = Clock::new(begun);
     let derived = derive(&settings, &motions, &mut clock)?;
+    let vocabulary = if derived.groups.is_empty() {
+        None
+    } else {
+        let source = |i: usize| hashes.get(i).cloned();
+        Some(modelled(&derived, &motions, &source, &mut clock)?)
+    };
     let seconds = args.timings.then(|| clock.seconds());
 
     let found = findings::Findings {
@@ -84,7 +91,7 @@ pub fn run(args: &DeriveArgs, global: &Global) -> Result<u8, Failure> {
     } else {
         found.text()
     };
-    if derived.groups.is_empty() {
+    let Some(vocabulary) = vocabulary else {
         print(told.as_bytes())?;
         read.print_skipped();
         return Err(Failure::failed(format!(
@@ -92,9 +99,7 @@ pub fn run(args: &DeriveArgs, global: &Global) -> Result<u8, Failure> {
             derived.segments.len()
         ))
         .hint("give more motion, a smaller --min-size, or another --segmenter or --duration"));
-    }
-    let vocabulary =
-        derived.vocabulary(&motions, &Modelling::default(), &|i| hashes.get(i).cloned())?;
+    };
     let shown = args.out.display().to_string();
     let bytes = vocabulary::write(&vocabulary, &shown).map_err(unwritten)?;
     if let Some(folder) = &args.report {
@@ -166,14 +171,32 @@ fn derive(
     clock: &mut Clock,
 ) -> Result<Derived, Failure> {
     let spinner = progress::spinner();
-    clock.stage(None);
+    clock.step(None);
     let derived = settings.run(motions, &mut |stage| {
-        clock.stage(Some(stage));
+        clock.step(Some(Step::Deriving(stage)));
         spinner.set_message(stage.name());
     });
-    clock.end();
+    clock.step(None);
     spinner.finish_and_clear();
     Ok(derived?)
+}
+
+/// Makes primitives of the groups with a line on the terminal, and tells what there is to know of them.
+fn modelled(
+    derived: &Derived,
+    motions: &[Motion],
+    source: &(dyn Fn(usize) -> Option<String> + Sync),
+    clock: &mut Clock,
+) -> Result<Vocabulary, Failure> {
+    let spinner = progress::spinner();
+    spinner.set_message("primitives");
+    clock.step(Some(Step::Primitives));
+    let vocabulary = derived.vocabulary(motions, &Modelling::default(), source);
+    clock.step(None);
+    spinner.finish_and_clear();
+    let vocabulary = vocabulary?;
+    print_notes(vocabulary.primitives(), true);
+    Ok(vocabulary)
 }
 
 type Marks = (String, Vec<marks::Mark>);
@@ -265,23 +288,30 @@ fn placed(motions: &[Motion], file: &str, marks: &[marks::Mark]) -> Result<Vec<M
 
 /// What to do now.
 fn next(args: &DeriveArgs, vocabulary: &str) -> String {
-    match &args.report {
-        Some(folder) => format!(
-            "\nwritten: {vocabulary}\nto look at: {}\n",
-            folder.join(kineme_paper::figures::PAGE).display()
-        ),
-        None => format!(
-            "\nwritten: {vocabulary}\nto look at what was found: the same with --report DIR, then open DIR/{}\n",
-            kineme_paper::figures::PAGE
-        ),
-    }
+    let page = kineme_paper::figures::PAGE;
+    let look = match &args.report {
+        Some(folder) => format!("to look at: {}", folder.join(page).display()),
+        None => {
+            format!("to look at what was found: the same with --report DIR, then open DIR/{page}")
+        }
+    };
+    format!("\nwritten: {vocabulary}\n{look}\nwhat its primitives are: kineme show {vocabulary}\n")
 }
 
-/// Times of the stages.
+/// What is timed.
+#[derive(Debug, Clone, Copy)]
+enum Step {
+    /// A stage of the derivation.
+    Deriving(Stage),
+    /// Making primitives of groups.
+    Primitives,
+}
+
+/// Times of the steps.
 struct Clock {
     begun: Instant,
     since: Instant,
-    stage: Option<Stage>,
+    step: Option<Step>,
     seconds: Seconds,
 }
 
@@ -291,7 +321,7 @@ impl Clock {
         Self {
             begun,
             since: Instant::now(),
-            stage: None,
+            step: None,
             seconds: Seconds {
                 reading: begun.elapsed().as_secs_f64(),
                 ..Seconds::default()
@@ -299,22 +329,21 @@ impl Clock {
         }
     }
 
-    fn stage(&mut self, next: Option<Stage>) {
+    /// Ends a step and begins the next.
+    fn step(&mut self, next: Option<Step>) {
         let took = self.since.elapsed().as_secs_f64();
-        match self.stage {
-            Some(Stage::Segmentation) => self.seconds.segmentation += took,
-            Some(Stage::Distances) => self.seconds.distances += took,
-            Some(Stage::Embedding) => self.seconds.embedding += took,
-            Some(Stage::Clustering) => self.seconds.clustering += took,
+        let of = &mut self.seconds;
+        match self.step {
+            Some(Step::Deriving(Stage::Segmentation)) => of.segmentation += took,
+            Some(Step::Deriving(Stage::Distances)) => of.distances += took,
+            Some(Step::Deriving(Stage::Embedding)) => of.embedding += took,
+            Some(Step::Deriving(Stage::Clustering)) => of.clustering += took,
+            Some(Step::Primitives) => of.primitives += took,
             None => {}
         }
+        of.total = self.begun.elapsed().as_secs_f64();
         self.since = Instant::now();
-        self.stage = next;
-    }
-
-    fn end(&mut self) {
-        self.stage(None);
-        self.seconds.total = self.begun.elapsed().as_secs_f64();
+        self.step = next;
     }
 
     fn seconds(&self) -> Seconds {

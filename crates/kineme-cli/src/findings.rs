@@ -36,6 +36,8 @@ pub struct Seconds {
     pub embedding: f64,
     /// Groups and behaviors.
     pub clustering: f64,
+    /// Making primitives of groups.
+    pub primitives: f64,
     /// All of it.
     pub total: f64,
 }
@@ -158,8 +160,15 @@ impl Findings<'_> {
         }
         if let Some(s) = &self.seconds {
             text.push_str(&format!(
-                "seconds: reading {:.2}, segmentation {:.2}, distances {:.2}, embedding {:.2}, clustering {:.2}, total {:.2}\n",
-                s.reading, s.segmentation, s.distances, s.embedding, s.clustering, s.total
+                "seconds: reading {:.2}, segmentation {:.2}, distances {:.2}, embedding {:.2}, clustering {:.2}, \
+                 primitives {:.2}, total {:.2}\n",
+                s.reading,
+                s.segmentation,
+                s.distances,
+                s.embedding,
+                s.clustering,
+                s.primitives,
+                s.total
             ));
         }
         text

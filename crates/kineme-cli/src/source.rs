@@ -107,6 +107,7 @@ impl Source {
     pub fn open<P: AsRef<Path>>(paths: &[P], args: &ReadArgs) -> Result<Self, Failure> {
         let profile = args.profile.as_deref().map(profile).transpose()?;
         let inputs = resolve(paths, args, None)?;
+        print_assumed(&inputs);
         if inputs.ignored > 0 {
             complain(&match inputs.ignored {
                 1 => "note: 1 file is no motion and was ignored".into(),
@@ -135,24 +136,8 @@ impl Source {
                 .filter(|&i| files[i].1 == rate_hz)
                 .collect();
             let paths: Vec<&PathBuf> = same.iter().map(|&i| &files[i].0).collect();
-            let inputs = resolve(&paths, args, rate_hz)?;
-            let mut entries = inputs.entries.into_iter().peekable();
-            for (i, path) in same.into_iter().zip(paths) {
-                let name = path.to_string_lossy();
-                let below = format!("{}/", name.trim_end_matches('/'));
-                let mut here = entries.next_if(|e| *e.name() == name).map(Ok);
-                while entries.next_if(|e| e.name().starts_with(&below)).is_some() {
-                    here = None;
-                }
-                found[i] = Some(here.unwrap_or_else(|| {
-                    let expected = "one motion";
-                    Err(FormatError::new(
-                        &*name,
-                        Place::File,
-                        "a folder or an archive",
-                        expected,
-                    ))
-                }));
+            for (i, entry) in same.into_iter().zip(single(&paths, args, rate_hz)?) {
+                found[i] = Some(entry);
             }
         }
         let source = Self {
@@ -278,7 +263,49 @@ impl Source {
     }
 }
 
-/// The motions at paths, and on stderr what had to be assumed of them.
+/// The one motion at each path, or that there is another number of them.
+fn single(
+    paths: &[&PathBuf],
+    args: &ReadArgs,
+    rate_hz: Option<f64>,
+) -> Result<Vec<Result<Entry, FormatError>>, Failure> {
+    let fits = |entries: &[Entry], paths: &[&PathBuf]| {
+        let pairs = entries.iter().zip(paths);
+        let same = pairs.filter(|(e, p)| *e.name() == p.to_string_lossy());
+        same.count() == paths.len() && entries.len() == paths.len()
+    };
+    let mut inputs = resolve(paths, args, rate_hz)?;
+    let mut alone = vec![true; paths.len()];
+    if !fits(&inputs.entries, paths) {
+        // A folder among them: which it is, only one by one can tell.
+        for (path, alone) in paths.iter().zip(&mut alone) {
+            *alone = fits(&resolve(&[path], args, rate_hz)?.entries, &[path]);
+        }
+        let files: Vec<&&PathBuf> = paths
+            .iter()
+            .zip(&alone)
+            .filter(|(_, a)| **a)
+            .map(|(p, _)| p)
+            .collect();
+        inputs = resolve(&files, args, rate_hz)?;
+    }
+    print_assumed(&inputs);
+    let mut entries = inputs.entries.into_iter();
+    let each = paths.iter().zip(alone).map(|(path, alone)| {
+        let refused = || {
+            let name = path.to_string_lossy();
+            FormatError::new(name, Place::File, "a folder or an archive", "one motion")
+        };
+        if alone {
+            entries.next().ok_or_else(refused)
+        } else {
+            Err(refused())
+        }
+    });
+    Ok(each.collect())
+}
+
+/// The motions at paths.
 fn resolve<P: AsRef<Path>>(
     paths: &[P],
     args: &ReadArgs,
@@ -292,11 +319,14 @@ fn resolve<P: AsRef<Path>>(
         asf: args.asf.clone(),
         rates,
     };
-    let inputs = Inputs::resolve(paths, &options)?;
+    Ok(Inputs::resolve(paths, &options)?)
+}
+
+/// Tells what had to be assumed of motions.
+fn print_assumed(inputs: &Inputs) {
     for warning in &inputs.warnings {
         complain(&format!("warning: {warning}"));
     }
-    Ok(inputs)
 }
 
 /// Tells the warnings of motions, each kind once.

@@ -212,7 +212,7 @@ fn tell_reached(primitive: &Primitive, target: &Target, reached: &Reached, param
         100.0 * reached.miss_m,
         place(&target.place),
         if far {
-            "; nearer its exemplars do not lead"
+            "; its exemplars lead no nearer"
         } else {
             ""
         }

@@ -5,15 +5,8 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use common::{Run, folder, kineme};
+use common::{done, folder, kineme, numbers};
 use serde_json::Value;
-
-fn done(folder: &Path, line: &str) -> Run {
-    let arguments: Vec<&str> = line.split_whitespace().collect();
-    let run = kineme(folder, &arguments);
-    assert_eq!(run.code, 0, "kineme {line}: {}", run.err);
-    run
-}
 
 /// The keys of an object in the order in which they are written.
 fn keys(text: &str) -> Vec<String> {
@@ -189,17 +182,6 @@ fn marks_cut_where_they_say() {
             run.err
         );
     }
-}
-
-/// The numbers of a table's rows.
-fn numbers(folder: &Path, name: &str) -> Vec<Vec<f64>> {
-    let text = fs::read_to_string(folder.join(name)).expect("a table");
-    let row = |line: &str| {
-        line.split(',')
-            .map(|c| c.parse().expect("a number"))
-            .collect()
-    };
-    text.lines().skip(1).map(row).collect()
 }
 
 fn check_near(folder: &Path, a: &str, b: &str, tolerance: f64) {

@@ -1,222 +1,11 @@
-//! What there is to know of a vocabulary, for people and for scripts.
+//! Tables and lists for people.
 
 use kineme::interpolation::Method;
 use kineme::primitive::{LeaveOneOut, ParameterSource, Trial};
 use kineme::{Exemplar, Primitive, Vocabulary};
-use serde::Serialize;
 
-use crate::args::Global;
-use crate::failure::Failure;
+use super::{durations, short};
 use crate::table::{Side, aligned};
-
-/// The whole vocabulary: the document of `--json`, else tables.
-pub fn all(vocabulary: &Vocabulary, name: &str, global: &Global) -> Result<String, Failure> {
-    let primitives: Vec<&Primitive> = vocabulary.primitives().iter().collect();
-    if global.json {
-        document(vocabulary, &primitives)
-    } else {
-        Ok(tables(vocabulary, name))
-    }
-}
-
-/// One primitive: the same document of it alone, else all there is to tell.
-pub fn one(
-    vocabulary: &Vocabulary,
-    primitive: &Primitive,
-    global: &Global,
-) -> Result<String, Failure> {
-    if global.json {
-        document(vocabulary, &[primitive])
-    } else {
-        Ok(details(primitive))
-    }
-}
-
-#[derive(Serialize)]
-struct Document<'a> {
-    body: &'a str,
-    dof: usize,
-    primitives: Vec<PrimitiveLine<'a>>,
-    behaviors: Vec<BehaviorLine<'a>>,
-    transitions: Vec<TransitionLine<'a>>,
-}
-
-#[derive(Serialize)]
-struct PrimitiveLine<'a> {
-    name: &'a str,
-    cyclic: bool,
-    /// Shortest and longest exemplar, seconds.
-    duration: [f64; 2],
-    parameters: Vec<ParameterLine<'a>>,
-    /// `adverbs`, `principal`, or the effector whose place they are.
-    parameters_from: &'a str,
-    interpolation: MethodLine,
-    trials: Vec<TrialLine>,
-    leave_one_out: Option<ErrorLine>,
-    members: Option<usize>,
-    coherence: Option<f64>,
-    exemplars: Vec<ExemplarLine<'a>>,
-    notes: Vec<&'a str>,
-}
-
-#[derive(Serialize)]
-struct ParameterLine<'a> {
-    name: &'a str,
-    low: f64,
-    high: f64,
-}
-
-#[derive(Serialize)]
-struct MethodLine {
-    method: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    power: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    nugget: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct TrialLine {
-    #[serde(flatten)]
-    method: MethodLine,
-    parameters: usize,
-    error_m: f64,
-}
-
-/// Errors of exemplars predicted from the others; those in `_m` but the wrists' are of landmarks all over the body.
-#[derive(Serialize)]
-struct ErrorLine {
-    joint_rad: f64,
-    wrist_m: f64,
-    error_m: Option<f64>,
-    nearest_m: f64,
-    mean_m: f64,
-}
-
-#[derive(Serialize)]
-struct ExemplarLine<'a> {
-    motion: &'a str,
-    start: f64,
-    end: f64,
-    blake3: Option<&'a str>,
-    adverbs: Option<&'a [f64]>,
-    /// In the parameters' own units.
-    parameters: Vec<f64>,
-}
-
-#[derive(Serialize)]
-struct BehaviorLine<'a> {
-    name: &'a str,
-    primitives: &'a [String],
-}
-
-#[derive(Serialize)]
-struct TransitionLine<'a> {
-    from: &'a str,
-    to: &'a str,
-    count: u32,
-}
-
-fn document(vocabulary: &Vocabulary, primitives: &[&Primitive]) -> Result<String, Failure> {
-    let shown = |name: &str| primitives.iter().any(|p| p.name() == name);
-    let all = vocabulary.primitives();
-    let transitions = vocabulary.transitions();
-    let pairs = (0..all.len()).flat_map(|from| (0..all.len()).map(move |to| (from, to)));
-    let document = Document {
-        body: vocabulary.body().name(),
-        dof: vocabulary.body().dof(),
-        primitives: primitives.iter().map(|p| line(p)).collect(),
-        behaviors: vocabulary
-            .behaviors()
-            .iter()
-            .filter(|b| b.primitives.iter().any(|p| shown(p)))
-            .map(|b| BehaviorLine {
-                name: &b.name,
-                primitives: &b.primitives,
-            })
-            .collect(),
-        transitions: pairs
-            .map(|(from, to)| TransitionLine {
-                from: all[from].name(),
-                to: all[to].name(),
-                count: transitions.count(from, to),
-            })
-            .filter(|t| t.count > 0 && (shown(t.from) || shown(t.to)))
-            .collect(),
-    };
-    let text = serde_json::to_string(&document).map_err(|e| Failure::failed(e.to_string()))?;
-    Ok(format!("{text}\n"))
-}
-
-fn line(primitive: &Primitive) -> PrimitiveLine<'_> {
-    let fit = primitive.fitted();
-    let space = primitive.parameters();
-    let exemplars = primitive.exemplars().iter().enumerate();
-    PrimitiveLine {
-        name: primitive.name(),
-        cyclic: primitive.is_cyclic(),
-        duration: durations(primitive),
-        parameters: space
-            .axes()
-            .iter()
-            .map(|a| ParameterLine {
-                name: &a.name,
-                low: a.low,
-                high: a.high,
-            })
-            .collect(),
-        parameters_from: match space.source() {
-            ParameterSource::Adverbs => "adverbs",
-            ParameterSource::Principal { .. } => "principal",
-            ParameterSource::Effector { effector, .. } => effector,
-        },
-        interpolation: method_line(&fit.method),
-        trials: fit
-            .trials
-            .iter()
-            .map(|t| TrialLine {
-                method: method_line(&t.method),
-                parameters: t.dims,
-                error_m: t.error_m,
-            })
-            .collect(),
-        leave_one_out: fit.error.as_ref().map(|e| ErrorLine {
-            joint_rad: e.joint_rad,
-            wrist_m: e.wrist_m,
-            error_m: fit.trials.first().map(|t| t.error_m),
-            nearest_m: e.nearest_m,
-            mean_m: e.mean_m,
-        }),
-        members: primitive.group().map(|g| g.members),
-        coherence: primitive.group().and_then(|g| g.coherence),
-        exemplars: exemplars
-            .map(|(i, e)| ExemplarLine {
-                motion: &e.provenance.motion,
-                start: e.provenance.start_secs,
-                end: e.provenance.end_secs,
-                blake3: e.provenance.blake3.as_deref(),
-                adverbs: e.adverbs.as_deref(),
-                parameters: space.from_unit(primitive.point(i)),
-            })
-            .collect(),
-        notes: primitive.notes().collect(),
-    }
-}
-
-fn method_line(method: &Method) -> MethodLine {
-    match *method {
-        Method::Shepard { power } => MethodLine {
-            method: "shepard",
-            power: Some(power),
-            nugget: None,
-        },
-        Method::Cardinal { nugget, .. } => MethodLine {
-            method: "verbs-and-adverbs",
-            power: None,
-            nugget: Some(nugget),
-        },
-    }
-}
 
 /// A method in words: what `--interpolation` calls it, and what it was smoothed by.
 fn method_name(method: &Method) -> String {
@@ -224,32 +13,6 @@ fn method_name(method: &Method) -> String {
         Method::Shepard { power } => format!("shepard, power {}", short(power)),
         Method::Cardinal { nugget: 0.0, .. } => "verbs-and-adverbs".into(),
         Method::Cardinal { nugget, .. } => format!("verbs-and-adverbs, nugget {}", short(nugget)),
-    }
-}
-
-/// Seconds that the shortest and the longest exemplar take; of cycles, one of them.
-fn durations(primitive: &Primitive) -> [f64; 2] {
-    let pairs = primitive.exemplars().iter().zip(&primitive.fitted().used);
-    pairs
-        .map(|(e, used)| (used.end - used.start) / e.motion.rate_hz())
-        .fold([f64::INFINITY, 0.0], |[low, high], secs| {
-            [low.min(secs), high.max(secs)]
-        })
-}
-
-/// A number in as few digits as tell people enough.
-pub fn short(value: f64) -> String {
-    let digits = if value.abs() < 10.0 { 3 } else { 1 };
-    let text = format!("{value:.digits$}");
-    let text = if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        &text
-    };
-    if text == "-0" {
-        "0".into()
-    } else {
-        text.into()
     }
 }
 
@@ -292,7 +55,8 @@ fn degrees(radians: f64) -> String {
     format!("{:.1}", radians.to_degrees())
 }
 
-fn tables(vocabulary: &Vocabulary, name: &str) -> String {
+/// What the primitives are, and how good.
+pub(super) fn tables(vocabulary: &Vocabulary, name: &str) -> String {
     let primitives = vocabulary.primitives();
     let exemplars: usize = primitives.iter().map(|p| p.exemplars().len()).sum();
     let derived = primitives.iter().any(|p| p.group().is_some());
@@ -352,8 +116,8 @@ fn judged(primitives: &[Primitive]) -> String {
         ("joints deg", Side::Right),
         ("wrists cm", Side::Right),
         ("body cm", Side::Right),
-        ("nearest", Side::Right),
-        ("mean", Side::Right),
+        ("nearest cm", Side::Right),
+        ("mean cm", Side::Right),
         ("by", Side::Left),
     ];
     let rows: Vec<Vec<String>> = primitives
@@ -375,7 +139,10 @@ fn judged(primitives: &[Primitive]) -> String {
             row
         })
         .collect();
-    aligned(&header, &rows)
+    format!(
+        "{}body: joints all over it, root mean square; nearest and mean: what the nearest exemplar or the mean would give\n",
+        aligned(&header, &rows)
+    )
 }
 
 /// Behaviors of several primitives.
@@ -397,7 +164,7 @@ fn counted(n: usize, what: &str) -> String {
 }
 
 /// All there is to tell of a primitive.
-fn details(primitive: &Primitive) -> String {
+pub(super) fn details(primitive: &Primitive) -> String {
     let fit = primitive.fitted();
     let [shortest, longest] = durations(primitive);
     let n = primitive.exemplars().len();
@@ -464,7 +231,8 @@ fn predicted(error: &LeaveOneOut, trials: &[Trial]) -> String {
         ("body cm", Side::Left),
     ];
     format!(
-        "{}of the chosen one: joints {} degrees, wrists {} cm. The exact one is kept unless another is better by 2 %.\n",
+        "{}The chosen one errs by {} degrees a joint and {} cm at the wrists. What passes through every exemplar is kept\n\
+         unless another is better by 2 %.\n",
         aligned(&header, &rows),
         degrees(error.joint_rad),
         cm(error.wrist_m)
