@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use kineme::choreography::{Key, Script, ScriptExemplar, perform};
-use kineme::primitive::{Exemplar, FlowSettings, Flowfield, Memory, Modelling, Primitive};
+use kineme::primitive::{Course, Exemplar, FlowSettings, Flowfield, Memory, Modelling, Primitive};
 use kineme::skeleton::Skeleton;
 use kineme::{Role, Root};
 use kineme_formats::script;
@@ -128,20 +128,19 @@ pub fn follow_waves(back: Return, memory: Memory) -> Result<Waves> {
         let left_out = others.remove(i);
         let primitive = Primitive::learn("wave", others, &modelling)?;
         let field = Flowfield::of(&primitive, &settings)?;
-        let motion = &left_out.motion;
-        let truth: Vec<&[f64]> = (0..motion.frames()).map(|f| motion.pose(f)).collect();
         let adverbs = left_out.adverbs.as_deref().unwrap_or_default();
         let p = primitive.parameters().to_unit(adverbs)?;
-        rollouts.push(rollout(&field, &p, &truth, motion.duration_secs())?);
+        rollouts.push(rollout(
+            &field,
+            &primitive.at(&p)?,
+            left_out.motion.pose(0),
+        )?);
     }
     let primitive = Primitive::learn("wave", exemplars, &modelling)?;
     let field = Flowfield::of(&primitive, &settings)?;
     for k in 0..25 {
-        let p = [0.25 * (k / 5) as f64, 0.25 * (k % 5) as f64];
-        let course = primitive.at(&p)?;
-        let poses: Vec<Vec<f64>> = (0..=100).map(|i| course.pose(0.01 * i as f64)).collect();
-        let truth: Vec<&[f64]> = poses.iter().map(Vec::as_slice).collect();
-        rollouts.push(rollout(&field, &p, &truth, course.duration_secs())?);
+        let course = primitive.at(&[0.25 * (k / 5) as f64, 0.25 * (k % 5) as f64])?;
+        rollouts.push(rollout(&field, &course, &course.pose(0.0))?);
     }
     let count = |f: &dyn Fn(&(f64, bool)) -> bool| rollouts.iter().filter(|r| f(r)).count();
     Ok(Waves {
@@ -152,15 +151,19 @@ pub fn follow_waves(back: Return, memory: Memory) -> Result<Waves> {
     })
 }
 
-/// How far out the wrist went as a share of the way, and whether it came back then.
-fn rollout(field: &Flowfield, p: &[f64], truth: &[&[f64]], secs: f64) -> Result<(f64, bool)> {
+/// From this posture along the course that is wanted: how far out the wrist went as a share of the course's way, and
+/// whether it came back then.
+fn rollout(field: &Flowfield, course: &Course, start: &[f64]) -> Result<(f64, bool)> {
     let body = field.body();
-    let start = wrist(body, truth[0]);
-    let away = |pose: &[f64]| (wrist(body, pose) - start).norm();
-    let whole = truth.iter().map(|p| away(p)).fold(0.0, f64::max);
-    let state = field.enter(truth[0])?.with_parameters(p)?;
+    let end = wrist(body, &course.pose(1.0));
+    let away = |pose: &[f64]| (wrist(body, pose) - end).norm();
+    let phases = (0..=100).map(|i| 0.01 * i as f64);
+    let whole = phases
+        .map(|phase| away(&course.pose(phase)))
+        .fold(0.0, f64::max);
+    let state = field.enter(start)?.with_parameters(course.parameters())?;
     let (mut out, mut back) = (0.0_f64, false);
-    for state in field.predict(&state, PATIENCE * secs, RATE_HZ)? {
+    for state in field.predict(&state, PATIENCE * course.duration_secs(), RATE_HZ)? {
         let share = away(state.pose()) / whole;
         out = out.max(share);
         back |= out >= OUT && share <= BACK;
