@@ -253,8 +253,11 @@ impl FromStr for Target {
     fn from_str(text: &str) -> Result<Self, String> {
         const WANTED: &str =
             "expected EFFECTOR=X,Y,Z: metres forward, left and up from between the shoulders";
+        /// Beyond any room, metres.
+        const FAR: f64 = 1000.0;
         let (effector, place) = text.split_once('=').ok_or(WANTED)?;
-        let place: Option<Vec<f64>> = place.split(',').map(finite).collect();
+        let near = |text| finite(text).filter(|v| v.abs() <= FAR);
+        let place: Option<Vec<f64>> = place.split(',').map(near).collect();
         let place = place.and_then(|p| p.try_into().ok()).ok_or(WANTED)?;
         Ok(Self {
             effector: effector.trim().into(),
