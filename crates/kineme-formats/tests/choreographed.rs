@@ -4,7 +4,9 @@ use std::path::Path;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
 
+use kineme::math::rotation::{exp, log};
 use kineme::{Modelling, Primitive, Vocabulary, ares};
+use nalgebra::{UnitQuaternion, Vector3};
 use rand::{Rng, RngExt, SeedableRng};
 
 const SCRIPTS: [(&str, &str, usize); 5] = [
@@ -96,4 +98,55 @@ fn targets_taken_from_a_primitive_are_reached() {
             1e6 * secs[secs.len() / 2]
         );
     }
+}
+
+/// The weighted intrinsic mean of rotations: Newton's steps from the heaviest.
+fn intrinsic_mean(turns: &[UnitQuaternion<f64>], weights: &[f64]) -> UnitQuaternion<f64> {
+    let heaviest = (0..turns.len()).max_by(|&a, &b| weights[a].total_cmp(&weights[b]));
+    let mut mean = turns[heaviest.expect("exemplars")];
+    for _ in 0..20 {
+        let step: Vector3<f64> = turns
+            .iter()
+            .zip(weights)
+            .map(|(q, w)| log(&(mean.inverse() * q)) * *w)
+            .sum();
+        mean *= exp(&step);
+    }
+    mean
+}
+
+#[test]
+fn blending_in_coordinates_is_near_the_intrinsic_mean_of_rotations() {
+    let mut rng = rand_pcg::Pcg64::seed_from_u64(5);
+    let mut worst: f64 = 0.0;
+    let mut angles = Vec::new();
+    for p in VOCABULARIES.iter().flat_map(|v| v.primitives()) {
+        let body = p.body();
+        for _ in 0..20 {
+            let at = random(p, &mut rng);
+            let phase = rng.random_range(0.0..1.0);
+            let pose = p.pose(&at, phase).expect("a pose");
+            let mut weights = vec![0.0; p.exemplars().len()];
+            p.interpolator().weights(&at, &mut weights);
+            let exemplars: Vec<Vec<f64>> = (0..weights.len())
+                .map(|i| p.registered(i, phase).pose)
+                .collect();
+            for joint in 0..body.joints().len() {
+                let turn = |pose: &[f64]| body.rotation(joint, &pose[body.coordinates(joint)]);
+                let turns: Vec<_> = exemplars.iter().map(|e| turn(e)).collect();
+                let apart = turn(&pose)
+                    .angle_to(&intrinsic_mean(&turns, &weights))
+                    .to_degrees();
+                worst = worst.max(apart);
+                angles.push(apart);
+            }
+        }
+    }
+    angles.sort_by(f64::total_cmp);
+    println!(
+        "median {:.4}, 99 % {:.3}, greatest {worst:.2} degrees",
+        angles[angles.len() / 2],
+        angles[angles.len() * 99 / 100]
+    );
+    assert!(worst < 2.0, "{worst}");
 }

@@ -3,11 +3,10 @@
 use std::fmt::Write as _;
 
 use kineme::interpolation::Method;
-use kineme::primitive::Modelling;
 
 use crate::intervals::{average, interval};
-use crate::models::{Judged, Rival, judge};
-use crate::sets::{LabelledSet, Result};
+use crate::models::{Judged, Rival};
+use crate::sets::Result;
 
 /// Classes with fewer clips are listed and not averaged.
 pub const LEAST_CLIPS: usize = 8;
@@ -19,20 +18,11 @@ const MEASURES: [(&str, usize); 3] = [
     ("landmark error, cm", 2),
 ];
 
-/// Judges all folds of a set and writes what came of it, as Markdown.
-///
-/// # Errors
-/// When a model cannot be made.
-pub fn interpolation_tables(out: &mut String, name: &str, set: &LabelledSet) -> Result<()> {
-    let judged = judge(set, &Modelling::default())?;
-    write_tables(out, name, &set.classes, &judged)
-}
-
 /// Writes the tables of judged folds.
 ///
 /// # Errors
 /// Never: writing to a string does not fail.
-pub fn write_tables(
+pub fn write_interpolation(
     out: &mut String,
     name: &str,
     classes: &[String],

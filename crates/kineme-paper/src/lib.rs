@@ -3,11 +3,13 @@
 pub mod demo;
 pub mod derivation;
 pub mod figures;
+pub mod flow_table;
 pub mod interpolation_table;
 pub mod intervals;
 mod kmeans;
 pub mod model_table;
 pub mod models;
+pub mod out_and_back;
 pub mod postures;
 pub mod sets;
 pub mod table;

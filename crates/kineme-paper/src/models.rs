@@ -7,7 +7,6 @@ use kineme::primitive::{
     Primitive, Provenance, Used,
 };
 use kineme::{Motion, interpolation::Method};
-use rayon::prelude::*;
 
 use crate::postures::{Errors, Postures};
 use crate::sets::{LabelledSet, Result};
@@ -130,54 +129,40 @@ pub struct Judged {
     pub dims: usize,
 }
 
-/// Judges every fold of a set, several at a time.
+/// Judges the primitive of a fold by the clip that was left out.
 ///
 /// # Errors
-/// When a class has fewer than two clips, or a model cannot be made.
-pub fn judge(set: &LabelledSet, modelling: &Modelling) -> Result<Vec<Judged>> {
-    let judged = |fold: &Fold| judge_fold(set, fold, modelling);
-    folds(set).par_iter().map(judged).collect()
-}
-
-fn judge_fold(set: &LabelledSet, fold: &Fold, modelling: &Modelling) -> Result<Judged> {
+/// When the clip cannot be registered to it.
+pub fn judge(set: &LabelledSet, fold: &Fold, primitive: &Primitive) -> Result<Judged> {
     let truth = Truth::of(&set.motions[fold.left_out]);
-    let mut weights: Vec<(Rival, Vec<f64>)> = Vec::new();
-    let mut chosen = None;
-    for (rival, interpolation) in [
-        (Rival::Shepard, Interpolation::Shepard),
-        (Rival::VerbsAndAdverbs, Interpolation::VerbsAndAdverbs),
-        (Rival::Chosen, Interpolation::Automatic),
-    ] {
-        let modelling = Modelling {
-            interpolation,
-            ..modelling.clone()
-        };
-        let primitive = learn(set, fold, &modelling)?;
-        let n = primitive.exemplars().len();
-        let p = primitive.parameters_of(truth.motion)?;
-        let mut own = vec![0.0; n];
-        let interpolator = primitive.interpolator();
-        interpolator.weights(&interpolator.clamped(&p), &mut own);
-        weights.push((rival, own));
-        if rival == Rival::Chosen {
-            weights.push((Rival::ClassMean, vec![1.0 / n as f64; n]));
-            weights.push((Rival::Nearest, single(n, nearest(&primitive, &p))));
-            chosen = Some(primitive);
-        }
-    }
-    let primitive = chosen.ok_or("nothing was chosen")?;
     let n = primitive.exemplars().len();
-    let exemplars = registered(&primitive);
-    let reading = truth.reading(&primitive)?;
+    let p = primitive.parameters_of(truth.motion)?;
+    let exemplars = registered(primitive);
+    let reading = truth.reading(primitive)?;
     let mut errors = [Errors::default(); 6];
-    for (rival, weights) in &weights {
-        let place = Rival::ALL.iter().position(|r| r == rival).unwrap_or(0);
-        errors[place] = truth.errors(&primitive, &reading, blended(&exemplars, weights))?;
+    for (error, rival) in errors.iter_mut().zip(Rival::ALL) {
+        let poses = match rival {
+            Rival::ClassMean => blended(&exemplars, &vec![1.0 / n as f64; n]),
+            Rival::Nearest => exemplars[nearest(primitive, &p)].clone(),
+            Rival::NearestInTruth => {
+                let own = |poses: &Vec<f64>| truth.errors(primitive, &reading, poses.clone());
+                let singles: Vec<Errors> = exemplars.iter().map(own).collect::<Result<_>>()?;
+                let best = |e: &&Errors, f: &&Errors| e.landmark_cm.total_cmp(&f.landmark_cm);
+                *error = *singles.iter().min_by(best).ok_or("no exemplars")?;
+                continue;
+            }
+            Rival::Shepard => {
+                let other = primitive.interpolated(Interpolation::Shepard)?;
+                blended(&exemplars, &weights(&other, &truth)?)
+            }
+            Rival::VerbsAndAdverbs => {
+                let other = primitive.interpolated(Interpolation::VerbsAndAdverbs)?;
+                blended(&exemplars, &weights(&other, &truth)?)
+            }
+            Rival::Chosen => blended(&exemplars, &weights(primitive, &truth)?),
+        };
+        *error = truth.errors(primitive, &reading, poses)?;
     }
-    let singles = (0..n).map(|i| truth.errors(&primitive, &reading, exemplars[i].clone()));
-    let singles: Vec<Errors> = singles.collect::<Result<_>>()?;
-    let best = |e: &&Errors, f: &&Errors| e.landmark_cm.total_cmp(&f.landmark_cm);
-    errors[2] = *singles.iter().min_by(best).ok_or("no exemplars")?;
     Ok(Judged {
         class: fold.class,
         errors,
@@ -186,6 +171,15 @@ fn judge_fold(set: &LabelledSet, fold: &Fold, modelling: &Modelling) -> Result<J
         method: primitive.fitted().method,
         dims: primitive.parameters().dims(),
     })
+}
+
+/// The weights that a primitive gives its exemplars where the clip lies.
+fn weights(primitive: &Primitive, truth: &Truth) -> Result<Vec<f64>> {
+    let p = primitive.parameters_of(truth.motion)?;
+    let interpolator = primitive.interpolator();
+    let mut weights = vec![0.0; primitive.exemplars().len()];
+    interpolator.weights(&interpolator.clamped(&p), &mut weights);
+    Ok(weights)
 }
 
 /// The poses of each exemplar at the phases compared.
@@ -210,12 +204,6 @@ fn blended(exemplars: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
         }
     }
     sum
-}
-
-fn single(n: usize, i: usize) -> Vec<f64> {
-    let mut weights = vec![0.0; n];
-    weights[i] = 1.0;
-    weights
 }
 
 fn nearest(primitive: &Primitive, p: &[f64]) -> usize {

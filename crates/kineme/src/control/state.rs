@@ -160,36 +160,60 @@ impl Moving {
         }
     }
 
-    /// Gives each ball the rotation vector nearest `goal`: a posture has two names for a rotation near a half turn, and
-    /// the way from one name to the other is a whole turn. The rotations and their velocities stay as they are. True when a name
-    /// has changed.
+    /// Gives each ball that has no limits the rotation vector nearest `goal`: a posture has two names for a rotation near
+    /// a half turn, and the way from one name to the other is a whole turn. The rotations and their velocities stay as
+    /// they are. True when a name has changed.
+    ///
+    /// A ball with limits needs none of this: the way between two places within its box is straight.
     pub fn named_near(&mut self, body: &Skeleton, goal: &[f64]) -> bool {
         let mut renamed = false;
-        for joint in 0..body.joints().len() {
-            let ball = body.coordinates(joint);
-            if ball.len() != 3 {
-                continue;
-            }
-            let here = Vector3::from_column_slice(&self.values[ball.clone()]);
-            let there = Vector3::from_column_slice(&goal[ball.clone()]);
-            if (here - there).norm() <= std::f64::consts::PI {
-                continue;
-            }
-            let named = log_near(&exp(&here), &there);
-            if named.norm() > FARTHEST {
-                continue;
-            }
-            let speed = Vector3::from_column_slice(&self.velocities[ball.clone()]);
-            let turning = right_jacobian(&here) * speed;
-            // Singular at a whole turn only, which no name comes near.
-            if let Some(inverse) = right_jacobian(&named).try_inverse() {
-                self.values[ball.clone()].copy_from_slice(named.as_slice());
-                self.velocities[ball].copy_from_slice((inverse * turning).as_slice());
-                renamed = true;
+        for joint in balls(body).filter(|&j| body.limits(j).is_empty()) {
+            let at = body.coordinates(joint);
+            let here = Vector3::from_column_slice(&self.values[at.clone()]);
+            let there = Vector3::from_column_slice(&goal[at.clone()]);
+            if (here - there).norm() > std::f64::consts::PI {
+                renamed |= self.rename(at, &log_near(&exp(&here), &there));
             }
         }
         renamed
     }
+
+    /// Gives each ball that lies beyond its limits its other name, if that lies within.
+    pub fn named_within_limits(&mut self, body: &Skeleton) {
+        for joint in balls(body).filter(|&j| !body.limits(j).is_empty()) {
+            let axes = &body.joints()[joint].axes;
+            let axes = [axes.flexion, axes.abduction, axes.axial];
+            let within = |v: &Vector3<f64>| {
+                let mut ranges = axes.iter().zip(body.limits(joint));
+                ranges.all(|(axis, range)| (range.low..=range.high).contains(&axis.dot(v)))
+            };
+            let at = body.coordinates(joint);
+            let here = Vector3::from_column_slice(&self.values[at.clone()]);
+            let other = log_near(&exp(&here), &-here);
+            if !within(&here) && within(&other) {
+                self.rename(at, &other);
+            }
+        }
+    }
+
+    /// Gives a ball another rotation vector for the same rotation, unless that is longer than a pose's are.
+    fn rename(&mut self, at: std::ops::Range<usize>, name: &Vector3<f64>) -> bool {
+        let here = Vector3::from_column_slice(&self.values[at.clone()]);
+        let velocity = Vector3::from_column_slice(&self.velocities[at.clone()]);
+        // Singular at a whole turn only, which no name comes near.
+        let inverse = right_jacobian(name).try_inverse();
+        let (Some(inverse), true) = (inverse, name.norm() <= FARTHEST) else {
+            return false;
+        };
+        let velocity = inverse * right_jacobian(&here) * velocity;
+        self.values[at.clone()].copy_from_slice(name.as_slice());
+        self.velocities[at].copy_from_slice(velocity.as_slice());
+        true
+    }
+}
+
+fn balls(body: &Skeleton) -> impl Iterator<Item = usize> {
+    (0..body.joints().len()).filter(|&j| body.coordinates(j).len() == 3)
 }
 
 /// The slope of the root's height by phase, metres.

@@ -92,7 +92,8 @@ impl Synthesizer {
         }
         settings.check()?;
         state.check(&body)?;
-        let now = Moving::of(state);
+        let mut now = Moving::of(state);
+        now.named_within_limits(&body);
         let target = Moving::still(now.values.clone());
         let offset = Offset::between(&now, &target, settings.blend_secs, settings.blend_secs);
         let dof = body.dof();

@@ -1,18 +1,25 @@
 //! From exemplars to a [`Fit`]: trim, register, parametrise, choose the interpolator.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 
+use super::curve::Curve;
 use super::exemplar::Exemplar;
-use super::judge::leave_one_out;
-use super::modelling::{Fit, Mismatched, Modelling, Parameterisation, Used};
+use super::judge::Judge;
+use super::modelling::{
+    Fit, Interpolation, LeaveOneOut, Mismatched, Modelling, Parameterisation, Trial, Used,
+};
 use super::registered::curves;
-use super::selection::{Points, leading, select, unit};
+use super::selection::{Points, Selection, clearly_best, leading, select, unit};
 use super::space::{ParameterAxis, ParameterSource, ParameterSpace};
 use super::structure::{cycles_of, foreign};
 use crate::alignment::{Registered, Registration, Trim, Warp, resample, resting_ends};
 use crate::error::{Error, Result};
+use crate::interpolation::Method;
 use crate::math::statistics::median;
 use crate::motion::landmark_dims;
+use crate::skeleton::Skeleton;
 
 /// Phases at which the shape of an exemplar is taken for principal coordinates and for choosing an interpolator.
 pub const SHAPE_PHASES: usize = 16;
@@ -59,8 +66,44 @@ pub(super) fn fit(
             found.refused.iter().all(|(i, _)| *i != index - 1)
         });
     };
-    let fit = modelled(&exemplars, phased, modelling, notes)?;
+    let in_phase = InPhase {
+        cyclic: phased.cyclic,
+        used: phased.used,
+        sequences: phased.sequences,
+        warps: phased.registered.warps,
+        mean: phased.registered.mean,
+    };
+    let fit = modelled(&exemplars, in_phase, None, modelling, notes)?;
     Ok((exemplars, fit))
+}
+
+/// Another interpolator for exemplars that have been registered.
+pub(super) fn interpolated(
+    exemplars: &[Exemplar],
+    fitted: &Fit,
+    interpolation: Interpolation,
+) -> Result<Fit> {
+    let dims = landmark_dims(exemplars[0].motion.skeleton());
+    let sequence =
+        |(e, part): (&Exemplar, &Used)| part_of(&e.motion.landmarks(), dims, part, fitted.cyclic);
+    let sequences = exemplars.iter().zip(&fitted.used).map(sequence).collect();
+    let known = match fitted.space.source() {
+        ParameterSource::Principal { .. } => None,
+        _ => Some((fitted.space.clone(), fitted.points.clone())),
+    };
+    let modelling = Modelling {
+        parameterisation: Parameterisation::Principal,
+        interpolation,
+        ..Modelling::default()
+    };
+    let in_phase = InPhase {
+        cyclic: fitted.cyclic,
+        used: fitted.used.clone(),
+        sequences,
+        warps: fitted.warps.clone(),
+        mean: fitted.reference.clone(),
+    };
+    modelled(exemplars, in_phase, known, &modelling, fitted.notes.clone())
 }
 
 /// Exemplars on the way to phase.
@@ -70,6 +113,16 @@ pub(super) struct Phased {
     /// Landmarks of the part that is used.
     pub sequences: Vec<Vec<f64>>,
     pub registered: Registered,
+}
+
+/// Exemplars of one phase, ready to be parametrised.
+struct InPhase {
+    cyclic: bool,
+    used: Vec<Used>,
+    sequences: Vec<Vec<f64>>,
+    warps: Vec<Warp>,
+    /// Registered mean landmarks.
+    mean: Vec<f64>,
 }
 
 /// Cuts out cycles or trims rests, and registers.
@@ -113,21 +166,23 @@ pub(super) fn moving(landmarks: &[f64], dims: usize, rate_hz: f64, trim: &Trim) 
     }
 }
 
-/// Parametrises and chooses the interpolator.
+/// Parametrises, unless space and points are known, and chooses the interpolator.
 fn modelled(
     exemplars: &[Exemplar],
-    phased: Phased,
+    in_phase: InPhase,
+    known: Option<(ParameterSpace, Vec<f64>)>,
     modelling: &Modelling,
     mut notes: Vec<String>,
 ) -> Result<Fit> {
     let body = exemplars[0].motion.skeleton();
     let dims = landmark_dims(body);
-    let Phased {
+    let InPhase {
         cyclic,
         used,
         sequences,
-        registered,
-    } = phased;
+        warps,
+        mean,
+    } = in_phase;
     let seconds: Vec<f64> = exemplars
         .iter()
         .zip(&used)
@@ -137,7 +192,7 @@ fn modelled(
     let knots = knots.clamp(KNOTS[0], KNOTS[1]);
     let shapes: Vec<Vec<f64>> = sequences
         .iter()
-        .zip(&registered.warps)
+        .zip(&warps)
         .map(|(s, warp)| shape(s, dims, warp))
         .collect();
     let n = exemplars.len();
@@ -147,8 +202,8 @@ fn modelled(
     let mut fit = Fit {
         cyclic,
         used,
-        warps: registered.warps,
-        reference: registered.mean,
+        warps,
+        reference: mean,
         knots,
         space: ParameterSpace::new(Vec::new(), ParameterSource::Adverbs)?,
         points: Vec::new(),
@@ -159,6 +214,7 @@ fn modelled(
     };
     let curves = curves(exemplars, &fit);
     let given = match &modelling.parameterisation {
+        _ if known.is_some() => known,
         Parameterisation::Automatic => adverbs(exemplars, modelling, &mut notes)?,
         Parameterisation::Principal => None,
         Parameterisation::Effector(effector) => {
@@ -166,36 +222,74 @@ fn modelled(
             Some(effector_space(effector, &places, &mut notes)?)
         }
     };
-    let wanted = modelling.interpolation;
-    let selection = match &given {
-        Some((space, points)) => {
-            fit.space = space.clone();
-            let points = Points::Given(points, space.dims());
-            select(&gram, per_landmark, &points, wanted)?
-        }
-        None => {
-            let selection = select(&gram, per_landmark, &Points::Principal, wanted)?;
-            fit.space = principal_space(&shapes, &gram, selection.dims)?;
-            selection
-        }
+    let points = match &given {
+        Some((space, points)) => Points::Given(points, space.dims()),
+        None => Points::Principal,
+    };
+    let selection = select(&gram, per_landmark, &points, modelling.interpolation)?;
+    let judged = judged(body, &curves, selection)?;
+    fit.space = match given {
+        Some((space, _)) => space,
+        None => principal_space(&shapes, &gram, judged.dims)?,
     };
     // Exemplars that do not differ span fewer directions than were asked for.
     let kept = fit.space.dims();
-    let rows = selection.points.chunks(selection.dims.max(1));
+    let rows = judged.points.chunks(judged.dims.max(1));
     fit.points = rows.flat_map(|row| &row[..kept]).copied().collect();
-    fit.method = selection.method;
-    fit.trials = selection.trials;
-    fit.error = selection.baselines.map(|baselines| {
-        leave_one_out(
-            body,
-            &curves,
-            &selection.folds,
-            &selection.weights,
-            baselines,
-        )
-    });
+    fit.method = judged.method;
+    fit.trials = judged.trials;
+    fit.error = judged.error;
     fit.notes = notes;
     Ok(fit)
+}
+
+/// The interpolator that blends postures best.
+struct Judged {
+    method: Method,
+    dims: usize,
+    points: Vec<f64>,
+    trials: Vec<Trial>,
+    error: Option<LeaveOneOut>,
+}
+
+/// Chooses among the finalists by the postures that they blend: far exemplars, or weights below 0, make other postures
+/// than the landmarks let expect.
+fn judged(body: &Arc<Skeleton>, curves: &[Curve], selection: Selection) -> Result<Judged> {
+    let Selection {
+        folds,
+        mut finalists,
+        mean,
+    } = selection;
+    let (mut chosen, mut error) = (0, None);
+    if !folds.is_empty() {
+        let judge = Judge::new(body, curves)?;
+        for f in &mut finalists {
+            f.trial.error_m = judge.landmark_m(&folds, &f.weights)?;
+        }
+        let errors: Vec<f64> = finalists.iter().map(|f| f.trial.error_m).collect();
+        chosen = clearly_best(&errors).unwrap_or(0);
+        let best = &finalists[chosen];
+        let (joint_rad, wrist_m) = judge.joint_rad_and_wrist_m(&folds, &best.weights);
+        error = Some(LeaveOneOut {
+            joint_rad,
+            wrist_m,
+            nearest_m: judge.landmark_m(&folds, &best.nearest)?,
+            mean_m: judge.landmark_m(&folds, &mean)?,
+        });
+    }
+    let best = finalists.remove(chosen);
+    let mut trials = Vec::new();
+    if error.is_some() {
+        trials.push(best.trial.clone());
+        trials.extend(finalists.into_iter().map(|f| f.trial));
+    }
+    Ok(Judged {
+        method: best.trial.method,
+        dims: best.trial.dims,
+        points: best.points,
+        trials,
+        error,
+    })
 }
 
 fn check(name: &str, exemplars: &[Exemplar]) -> Result<()> {

@@ -5,8 +5,8 @@ use std::sync::{Arc, OnceLock};
 use super::course::{Course, Sample, sample};
 use super::curve::Curve;
 use super::exemplar::Exemplar;
-use super::fitting::{MOST_EXEMPLARS, SHAPE_PHASES, fit, moving, part_of, shape};
-use super::modelling::{Fit, Modelling};
+use super::fitting::{MOST_EXEMPLARS, SHAPE_PHASES, fit, interpolated, moving, part_of, shape};
+use super::modelling::{Fit, Interpolation, Modelling};
 use super::registered::curves;
 use super::space::{ParameterSource, ParameterSpace};
 use super::structure::cycle_of;
@@ -141,6 +141,16 @@ impl Primitive {
             interpolator,
             curves: OnceLock::new(),
         })
+    }
+
+    /// The same exemplars, registered and parametrised as they are, with another interpolator; principal coordinates may
+    /// become fewer or more.
+    ///
+    /// # Errors
+    /// When the parameters are not finite.
+    pub fn interpolated(&self, interpolation: Interpolation) -> Result<Self> {
+        let fit = interpolated(&self.exemplars, &self.fit, interpolation)?;
+        Self::from_fit(&self.name, self.exemplars.clone(), fit, self.group)
     }
 
     /// The same primitive under another name.

@@ -24,24 +24,30 @@ pub(super) enum Points<'a> {
 /// Exemplars that are left out in turn at most; of more, evenly chosen ones.
 const MOST_FOLDS: usize = 60;
 
-/// What the selection found.
+/// What the selection found: the best of each family of interpolators, exact ones first. Where nothing can be left out,
+/// one that was not tried.
 pub(super) struct Selection {
-    /// Parameters in the unit cube, row-major.
-    pub points: Vec<f64>,
-    pub dims: usize,
-    pub method: Method,
-    /// The chosen trial first, then the best of each family.
-    pub trials: Vec<Trial>,
-    /// Landmark errors (metres) of the nearest exemplar in parameters and of the mean of the others.
-    pub baselines: Option<[f64; 2]>,
     /// The exemplars that were left out in turn.
     pub folds: Vec<usize>,
-    /// The weights of the others for each of them, row-major `folds x n`, zero for itself.
-    pub weights: Vec<f64>,
+    pub finalists: Vec<Finalist>,
+    /// Weights of the mean of the others, as [`Finalist::weights`].
+    pub mean: Vec<f64>,
 }
 
-/// Chooses among interpolators. `gram` holds the inner products of the exemplars' registered landmarks, `per_landmark`
-/// the number of landmarks that one exemplar has over all phases.
+/// An interpolator with what it needs.
+pub(super) struct Finalist {
+    pub trial: Trial,
+    /// Parameters in the unit cube, row-major.
+    pub points: Vec<f64>,
+    /// The weights of the others for each fold, row-major `folds x n`, zero for itself.
+    pub weights: Vec<f64>,
+    /// Likewise, one for the exemplar that is nearest in parameters.
+    pub nearest: Vec<f64>,
+}
+
+/// Finds the best interpolators of each family. `gram` holds the inner products of the exemplars' registered landmarks,
+/// `per_landmark` the number of landmarks that one exemplar has over all phases: errors are those of landmarks blended
+/// as they are, near those of blended postures and quickly had.
 pub(super) fn select(
     gram: &DMatrix<f64>,
     per_landmark: f64,
@@ -66,64 +72,59 @@ pub(super) fn select(
             principal_folds(gram, most, &left),
         ),
     };
+    if n < 2 {
+        let m = dims[0];
+        let points = unit(&all, most, m, n).0;
+        let trial = Trial {
+            method: default_method(&points, n, m, wanted),
+            dims: m,
+            error_m: 0.0,
+        };
+        return Ok(Selection {
+            folds: Vec::new(),
+            finalists: vec![Finalist {
+                trial,
+                points,
+                weights: Vec::new(),
+                nearest: Vec::new(),
+            }],
+            mean: Vec::new(),
+        });
+    }
     let mut trials: Vec<(Trial, Vec<f64>)> = Vec::new();
-    if n > 1 {
-        for &m in &dims {
-            for method in candidates(&unit(&all, most, m, n).0, n, m, wanted) {
-                let weights = fold_weights(&folds, n, most, m, &method)?;
-                let error_m = mean_error(gram, &folds, &weights, per_landmark);
-                let dims = m;
-                let trial = Trial {
-                    method,
-                    dims,
-                    error_m,
-                };
-                trials.push((trial, weights));
-            }
+    for &m in &dims {
+        for method in candidates(&unit(&all, most, m, n).0, n, m, wanted) {
+            let weights = fold_weights(&folds, n, most, m, &method)?;
+            let error_m = mean_error(gram, &folds, &weights, per_landmark);
+            let dims = m;
+            let trial = Trial {
+                method,
+                dims,
+                error_m,
+            };
+            trials.push((trial, weights));
         }
     }
-    let Some(chosen) = choose(&trials) else {
-        let m = most.min(dims[0]);
-        let points = unit(&all, most, m, n).0;
-        let method = default_method(&points, n, m, wanted);
-        return Ok(Selection {
-            method,
-            points,
-            dims: m,
-            trials: Vec::new(),
-            baselines: None,
-            folds: Vec::new(),
-            weights: Vec::new(),
-        });
-    };
-    let (trial, weights) = trials[chosen].clone();
-    let m = trial.dims;
-    let baselines = Some([
-        mean_error(
-            gram,
-            &folds,
-            &nearest_weights(&folds, n, most, m),
-            per_landmark,
-        ),
-        mean_error(gram, &folds, &mean_weights(&folds, n), per_landmark),
-    ]);
-    let mut told = vec![trial.clone()];
-    for family in [Family::Exact, Family::Smoothed, Family::Shepard] {
-        let best = trials
-            .iter()
-            .map(|(t, _)| t)
-            .filter(|t| Family::of(&t.method) == family)
-            .min_by(|a, b| a.error_m.total_cmp(&b.error_m));
-        told.extend(best.filter(|t| **t != trial).cloned());
-    }
+    let finalists = [Family::Exact, Family::Smoothed, Family::Shepard]
+        .into_iter()
+        .filter_map(|family| {
+            let own: Vec<usize> = (0..trials.len())
+                .filter(|&t| Family::of(&trials[t].0.method) == family)
+                .collect();
+            let errors: Vec<f64> = own.iter().map(|&t| trials[t].0.error_m).collect();
+            let (trial, weights) = trials[own[clearly_best(&errors)?]].clone();
+            Some(Finalist {
+                points: unit(&all, most, trial.dims, n).0,
+                nearest: nearest_weights(&folds, n, most, trial.dims),
+                trial,
+                weights,
+            })
+        })
+        .collect();
     Ok(Selection {
-        points: unit(&all, most, m, n).0,
-        dims: m,
-        method: trial.method,
-        trials: told,
-        baselines,
+        finalists,
+        mean: mean_weights(&folds, n),
         folds: left,
-        weights,
     })
 }
 
@@ -144,12 +145,11 @@ impl Family {
     }
 }
 
-/// The first that no later one beats clearly.
-fn choose(trials: &[(Trial, Vec<f64>)]) -> Option<usize> {
+/// The first error that no later one beats clearly.
+pub(super) fn clearly_best(errors: &[f64]) -> Option<usize> {
     let mut best: Option<usize> = None;
-    for (i, (trial, _)) in trials.iter().enumerate() {
-        let better = best.is_none_or(|b| trial.error_m < BETTER * trials[b].0.error_m);
-        if better {
+    for (i, &error) in errors.iter().enumerate() {
+        if best.is_none_or(|b| error < BETTER * errors[b]) {
             best = Some(i);
         }
     }
