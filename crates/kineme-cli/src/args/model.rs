@@ -294,7 +294,7 @@ fn finite(text: &str) -> Option<f64> {
 Examples:
   kineme synthesize boxing.kineme jab -o jab.bvh               the middle of its exemplars
   kineme synthesize boxing.kineme jab -o jab.bvh --at 0.9,0.2  parameters, as `kineme show` has them
-  kineme synthesize boxing.kineme jab -o jab.bvh --reach right_hand=0.5,0.1,0.2
+  kineme synthesize boxing.kineme jab -o jab.bvh --reach right_hand=0.5,-0.35,0.1
                                            metres forward, left and up from between the shoulders
   kineme synthesize moves.kineme walk -o walk.csv --cycles 5 --from-pose take.bvh@2.5
   kineme synthesize moves.kineme walk -o - --to csv | head     joint angles on stdout")]
