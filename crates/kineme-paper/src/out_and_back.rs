@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-use kineme::choreography::{Key, Script, perform};
-use kineme::primitive::{Exemplar, FlowSettings, Flowfield, Memory, Modelling, Primitive};
+use kineme::choreography::{Key, Script, ScriptExemplar, perform};
+use kineme::primitive::{Course, Exemplar, FlowSettings, Flowfield, Memory, Modelling, Primitive};
 use kineme::skeleton::Skeleton;
 use kineme::{Role, Root};
 use kineme_formats::script;
@@ -23,6 +23,15 @@ const PATIENCE: f64 = 2.0;
 const OUT: f64 = 0.8;
 const BACK: f64 = 0.2;
 
+/// How a wave comes back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Return {
+    /// As people wave: by the script's return, in which the hand stays behind the arm to the other side.
+    Choreographed,
+    /// Through the very postures that it left by, in reverse.
+    Reversed,
+}
+
 /// What became of waves that were followed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Waves {
@@ -36,14 +45,14 @@ pub struct Waves {
     pub reached: f64,
 }
 
-/// Waves across and back as one movement: the script's exemplars joined by their parameters, in the order of the script.
+/// Waves across and back as one movement: those of the script, in its order, each with its return.
 ///
 /// # Errors
 /// When a wave across has no return.
-pub fn waves() -> Result<Vec<Exemplar>> {
+pub fn waves(back: Return) -> Result<Vec<Exemplar>> {
     let script = script::parse("horizontal-waving.toml", WAVES.as_bytes())?;
     let body = Arc::new(kineme::body(&script.body)?);
-    joined(&script)?
+    joined(&script, back)?
         .into_iter()
         .map(|(parameters, keys)| {
             let motion = perform("wave", &keys, &body, RATE_HZ)?;
@@ -56,32 +65,55 @@ pub fn waves() -> Result<Vec<Exemplar>> {
 }
 
 /// Parameters and keys of each wave across with its return behind it.
-fn joined(script: &Script) -> Result<Vec<(BTreeMap<String, f64>, Vec<Key>)>> {
-    let (across, back): (Vec<_>, Vec<_>) = script
+fn joined(script: &Script, back: Return) -> Result<Vec<(BTreeMap<String, f64>, Vec<Key>)>> {
+    let (across, home): (Vec<_>, Vec<_>) = script
         .exemplars
         .iter()
         .partition(|e| e.primitive == "wave-across");
-    let join = |out: &&kineme::choreography::ScriptExemplar| {
-        let home = back.iter().find(|b| b.parameters == out.parameters);
-        let home = home.ok_or("a wave across without its return")?;
+    let join = |out: &&ScriptExemplar| {
+        let turn = out.keys.last().map_or(0.0, |k| k.time);
         let mut keys = out.keys.clone();
-        let turn = keys.last().map_or(0.0, |k| k.time);
-        keys.extend(home.keys.iter().skip(1).map(|k| Key {
-            time: k.time + turn,
-            ..k.clone()
-        }));
+        match back {
+            Return::Choreographed => {
+                let own = home.iter().find(|h| h.parameters == out.parameters);
+                let own = own.ok_or("a wave across without its return")?;
+                keys.extend(own.keys.iter().skip(1).map(|k| Key {
+                    time: turn + k.time,
+                    ..k.clone()
+                }));
+            }
+            Return::Reversed => {
+                keys.extend(whole(&out.keys).into_iter().rev().skip(1).map(|k| Key {
+                    time: 2.0 * turn - k.time,
+                    ..k
+                }))
+            }
+        }
         Ok((out.parameters.clone(), keys))
     };
     across.iter().map(join).collect()
 }
 
-/// Follows the field of this kind from the first posture of waves: each exemplar left out of the model in turn, and a
-/// lattice of parameters of the model of all.
+/// Keys that say every angle, also where it has not changed.
+fn whole(keys: &[Key]) -> Vec<Key> {
+    let mut angles = BTreeMap::new();
+    let filled = keys.iter().map(|k| {
+        angles.extend(k.angles.clone());
+        Key {
+            time: k.time,
+            angles: angles.clone(),
+        }
+    });
+    filled.collect()
+}
+
+/// Follows the field of this kind from the first posture of waves, told which wave is wanted: each exemplar left out of
+/// the model in turn, and a lattice of parameters of the model of all.
 ///
 /// # Errors
 /// When a model cannot be made.
-pub fn follow_waves(memory: Memory) -> Result<Waves> {
-    let exemplars = waves()?;
+pub fn follow_waves(back: Return, memory: Memory) -> Result<Waves> {
+    let exemplars = waves(back)?;
     let settings = FlowSettings {
         memory,
         ..FlowSettings::default()
@@ -96,18 +128,19 @@ pub fn follow_waves(memory: Memory) -> Result<Waves> {
         let left_out = others.remove(i);
         let primitive = Primitive::learn("wave", others, &modelling)?;
         let field = Flowfield::of(&primitive, &settings)?;
-        let motion = &left_out.motion;
-        let truth: Vec<&[f64]> = (0..motion.frames()).map(|f| motion.pose(f)).collect();
-        rollouts.push(rollout(&field, &truth, motion.duration_secs())?);
+        let adverbs = left_out.adverbs.as_deref().unwrap_or_default();
+        let p = primitive.parameters().to_unit(adverbs)?;
+        rollouts.push(rollout(
+            &field,
+            &primitive.at(&p)?,
+            left_out.motion.pose(0),
+        )?);
     }
     let primitive = Primitive::learn("wave", exemplars, &modelling)?;
     let field = Flowfield::of(&primitive, &settings)?;
     for k in 0..25 {
-        let p = [0.25 * (k / 5) as f64, 0.25 * (k % 5) as f64];
-        let course = primitive.at(&p)?;
-        let poses: Vec<Vec<f64>> = (0..=100).map(|i| course.pose(0.01 * i as f64)).collect();
-        let truth: Vec<&[f64]> = poses.iter().map(Vec::as_slice).collect();
-        rollouts.push(rollout(&field, &truth, course.duration_secs())?);
+        let course = primitive.at(&[0.25 * (k / 5) as f64, 0.25 * (k % 5) as f64])?;
+        rollouts.push(rollout(&field, &course, &course.pose(0.0))?);
     }
     let count = |f: &dyn Fn(&(f64, bool)) -> bool| rollouts.iter().filter(|r| f(r)).count();
     Ok(Waves {
@@ -118,15 +151,19 @@ pub fn follow_waves(memory: Memory) -> Result<Waves> {
     })
 }
 
-/// How far out the wrist went as a share of the way, and whether it came back then.
-fn rollout(field: &Flowfield, truth: &[&[f64]], secs: f64) -> Result<(f64, bool)> {
+/// From this posture along the course that is wanted: how far out the wrist went as a share of the course's way, and
+/// whether it came back then.
+fn rollout(field: &Flowfield, course: &Course, start: &[f64]) -> Result<(f64, bool)> {
     let body = field.body();
-    let start = wrist(body, truth[0]);
-    let away = |pose: &[f64]| (wrist(body, pose) - start).norm();
-    let whole = truth.iter().map(|p| away(p)).fold(0.0, f64::max);
-    let state = field.enter(truth[0])?;
+    let end = wrist(body, &course.pose(1.0));
+    let away = |pose: &[f64]| (wrist(body, pose) - end).norm();
+    let phases = (0..=100).map(|i| 0.01 * i as f64);
+    let whole = phases
+        .map(|phase| away(&course.pose(phase)))
+        .fold(0.0, f64::max);
+    let state = field.enter(start)?.with_parameters(course.parameters())?;
     let (mut out, mut back) = (0.0_f64, false);
-    for state in field.predict(&state, PATIENCE * secs, RATE_HZ)? {
+    for state in field.predict(&state, PATIENCE * course.duration_secs(), RATE_HZ)? {
         let share = away(state.pose()) / whole;
         out = out.max(share);
         back |= out >= OUT && share <= BACK;
@@ -148,20 +185,25 @@ fn wrist(body: &Skeleton, pose: &[f64]) -> Vector3<f64> {
 pub fn out_and_back_table(out: &mut String) -> Result<()> {
     writeln!(
         out,
-        "\n### Out and back: the horizontal wave, across and return as one movement\n\n| field | waves | completed | stalled | of these never out 80 % of the way | mean way out |\n| --- | --- | --- | --- | --- | --- |"
+        "\n### Out and back: the horizontal wave, across and back as one movement\n\n| way back | field | waves | completed | stalled | of these never out 80 % of the way | mean way out |\n| --- | --- | --- | --- | --- | --- | --- |"
     )?;
-    for (name, memory) in [("**phase**", Memory::Phase), ("`paper`", Memory::None)] {
-        let w = follow_waves(memory)?;
-        writeln!(
-            out,
-            "| {name} | {} | {} | {} ({:.0} %) | {} | {:.0} % |",
-            w.followed,
-            w.completed,
-            w.followed - w.completed,
-            100.0 * (w.followed - w.completed) as f64 / w.followed as f64,
-            w.never_out,
-            100.0 * w.reached
-        )?;
+    for (way, back) in [
+        ("choreographed", Return::Choreographed),
+        ("the same, reversed", Return::Reversed),
+    ] {
+        for (name, memory) in [("**phase**", Memory::Phase), ("`paper`", Memory::None)] {
+            let w = follow_waves(back, memory)?;
+            let stalled = w.followed - w.completed;
+            writeln!(
+                out,
+                "| {way} | {name} | {} | {} | {stalled} ({:.0} %) | {} | {:.0} % |",
+                w.followed,
+                w.completed,
+                100.0 * stalled as f64 / w.followed as f64,
+                w.never_out,
+                100.0 * w.reached
+            )?;
+        }
     }
     Ok(())
 }
