@@ -66,7 +66,7 @@ pub fn run(args: &SynthesizeArgs, global: &Global) -> Result<u8, Failure> {
             let space = primitive.parameters();
             let unit = space.to_unit(&values.0);
             unit.map_err(|e| {
-                Failure::usage(format!("--at: `{}` takes {e}", primitive.name()))
+                Failure::usage(format!("--at: `{}`: {e}", primitive.name()))
                     .hint("`kineme show VOCAB` prints parameters and their ranges")
             })?
         }

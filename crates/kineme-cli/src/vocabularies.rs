@@ -145,7 +145,16 @@ impl Lesson {
             .map(|e| e.provenance.clone())
             .collect();
         let labels: Vec<String> = self.exemplars.iter().map(Exemplar::label).collect();
-        let primitive = Primitive::learn(&self.name, self.exemplars, &self.modelling)?;
+        let primitive =
+            Primitive::learn(&self.name, self.exemplars, &self.modelling).map_err(|e| {
+                let failure = Failure::from(e.clone());
+                let named = format!("`{}`", self.name);
+                if e.to_string().contains(&named) {
+                    failure
+                } else {
+                    failure.at(&named)
+                }
+            })?;
         let mut kept = primitive
             .exemplars()
             .iter()

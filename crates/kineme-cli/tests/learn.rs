@@ -251,3 +251,33 @@ fn an_exemplar_of_another_structure_is_refused_by_file_and_line() {
     let learned = vocabulary(at, "yes.kineme");
     assert_eq!(learned.primitives()[0].exemplars().len(), 9);
 }
+
+#[test]
+fn rates_and_cycles_are_what_a_person_says() {
+    let folder = common::folder();
+    let at = folder.path();
+    let rows = "file,label,rate\npoints.csv,a,15\narms.bvh,b,\n";
+    fs::write(at.join("rates.csv"), rows).expect("a manifest");
+    let run = done(at, "learn rates.csv -o rates.kineme");
+    assert!(!run.err.contains("assumed"), "{}", run.err);
+    let learned = vocabulary(at, "rates.kineme");
+    let rate = |i: usize| learned.primitives()[i].exemplars()[0].motion.rate_hz();
+    assert_eq!(rate(0), 15.0);
+    assert!((rate(1) - 30.0).abs() < 1e-3);
+
+    let rows = "file,label,start,end\narms.bvh,raise,0,3\narms.bvh,other,0,3\n";
+    fs::write(at.join("cycles.csv"), rows).expect("a manifest");
+    done(at, "learn cycles.csv -o cycles.kineme --cyclic raise");
+    let learned = vocabulary(at, "cycles.kineme");
+    let cyclic: Vec<bool> = learned.primitives().iter().map(|p| p.is_cyclic()).collect();
+    assert_eq!(cyclic, [true, false]);
+    let seconds = |line: &str| {
+        let told = json(
+            at,
+            &format!("synthesize cycles.kineme raise --json -o {line}"),
+        );
+        told["duration"].as_f64().expect("a number")
+    };
+    let (one, three) = (seconds("1.csv"), seconds("3.csv --cycles 3"));
+    assert!((three - 3.0 * one).abs() < 0.03, "{one} s and {three} s");
+}

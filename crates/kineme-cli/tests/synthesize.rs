@@ -294,7 +294,7 @@ fn what_cannot_be_is_refused_with_the_right_code_and_a_word_on_it() {
         (
             "synthesize punching.kineme punch-out -o x.bvh --at 1",
             2,
-            "2 parameters (height, side), found 1",
+            "`punch-out`: 2 parameters (height, side), found 1",
         ),
         (
             "synthesize punching.kineme punch-out -o x.bvh --at 1,high",
@@ -313,6 +313,11 @@ fn what_cannot_be_is_refused_with_the_right_code_and_a_word_on_it() {
         ),
         (
             "synthesize punching.kineme punch-out -o x.bvh --reach head=1,2",
+            2,
+            "EFFECTOR=X,Y,Z",
+        ),
+        (
+            "synthesize punching.kineme punch-out -o x.bvh --reach head=1e300,0,0",
             2,
             "EFFECTOR=X,Y,Z",
         ),

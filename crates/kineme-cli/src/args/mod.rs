@@ -21,7 +21,7 @@ Examples:
                                                   find the movements in it, and look at them
   kineme learn labels.csv -o moves.kineme         or say which movement is which
   kineme show moves.kineme                        what the primitives are, and how good
-  kineme synthesize moves.kineme jab -o jab.bvh --reach right_hand=0.5,0.1,0.2
+  kineme synthesize moves.kineme jab -o jab.bvh --reach right_hand=0.5,-0.35,0.1
                                                   a motion of one, aimed
   kineme convert take.amc take.bvh                another format, nothing lost
 

@@ -61,7 +61,9 @@ pub struct ModelArgs {
 ///
 /// Each label of the manifest becomes a primitive, in the order in which labels first appear, its exemplars the files, or
 /// spans of files, that carry it. Columns: file,label and optionally start,end (seconds), rate (hertz, for files that do
-/// not say it) and p1,p2,... (adverbs: how the movement is done, in any unit). Rows without a label are ignored.
+/// not say it) and p1,p2,... (adverbs: how the movement is done, in any unit). Rows without a label are ignored. An
+/// exemplar of another structure than the others of its label, such as their mirror image, is refused; --keep-going
+/// leaves it out and lists it.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -102,8 +104,8 @@ pub struct LearnArgs {
 #[command(after_help = "\
 Examples:
   kineme choreograph boxing.toml -o boxing.kineme
-  kineme choreograph boxing.toml -o boxing.kineme --motions boxing/   and every exemplar as BVH, with a manifest
-  kineme choreograph animations.toml --motions negatives/             a script of animations alone
+  kineme choreograph boxing.toml -o boxing.kineme --motions boxing/  and every exemplar as BVH
+  kineme choreograph animations.toml --motions negatives/            a script of animations alone
 A script:
   body = \"ares\"
   [[exemplar]]
@@ -208,7 +210,7 @@ Examples:
   kineme edit found.kineme -o named.kineme --rename group-03=wave --rename group-07=jab
   kineme edit found.kineme -o fewer.kineme --merge group-01,group-04=walk --remove group-09
   kineme edit moves.kineme -o more.kineme --add new-takes.csv --root captures/
-                                                 file,label rows: exemplars for jab, or a new primitive
+                                                 exemplars for what is there, or new primitives
   kineme edit moves.kineme -o moves.kineme --force --remove jab")]
 pub struct EditArgs {
     /// The vocabulary; - is stdin
@@ -251,8 +253,11 @@ impl FromStr for Target {
     fn from_str(text: &str) -> Result<Self, String> {
         const WANTED: &str =
             "expected EFFECTOR=X,Y,Z: metres forward, left and up from between the shoulders";
+        /// Beyond any room, metres.
+        const FAR: f64 = 1000.0;
         let (effector, place) = text.split_once('=').ok_or(WANTED)?;
-        let place: Option<Vec<f64>> = place.split(',').map(finite).collect();
+        let near = |text| finite(text).filter(|v| v.abs() <= FAR);
+        let place: Option<Vec<f64>> = place.split(',').map(near).collect();
         let place = place.and_then(|p| p.try_into().ok()).ok_or(WANTED)?;
         Ok(Self {
             effector: effector.trim().into(),
@@ -282,17 +287,17 @@ fn finite(text: &str) -> Option<f64> {
 
 /// Write a motion of a primitive
 ///
-/// The movement at the parameters asked for, or at those that bring a hand to a point, from the body's own start of it or
-/// from any posture, which is left smoothly.
+/// The movement at the parameters asked for, or at those that bring a hand to a point; from its own beginning, or from any
+/// posture, which is left smoothly. When it misses the point it is written all the same, and how far is told.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  kineme synthesize boxing.kineme jab -o jab.bvh                    the middle of its exemplars
-  kineme synthesize boxing.kineme jab -o jab.bvh --at 0.9,0.2       its parameters, as `kineme show` prints them
-  kineme synthesize boxing.kineme jab -o jab.bvh --reach right_hand=0.5,0.1,0.2
-                                                 metres forward, left and up from between the shoulders
+  kineme synthesize boxing.kineme jab -o jab.bvh               the middle of its exemplars
+  kineme synthesize boxing.kineme jab -o jab.bvh --at 0.9,0.2  parameters, as `kineme show` has them
+  kineme synthesize boxing.kineme jab -o jab.bvh --reach right_hand=0.5,-0.35,0.1
+                                           metres forward, left and up from between the shoulders
   kineme synthesize moves.kineme walk -o walk.csv --cycles 5 --from-pose take.bvh@2.5
-  kineme synthesize moves.kineme walk -o - --to csv | head          joint angles on stdout")]
+  kineme synthesize moves.kineme walk -o - --to csv | head     joint angles on stdout")]
 pub struct SynthesizeArgs {
     /// The vocabulary; - is stdin
     #[arg(value_name = "VOCAB")]

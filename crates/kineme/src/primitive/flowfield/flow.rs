@@ -2,7 +2,7 @@
 
 use super::field::Flowfield;
 use super::local::{Place, Point};
-use super::samples::{LANES, MOST_AXES};
+use super::samples::{LANES, MOST_AXES, Match};
 use super::settings::Memory;
 use crate::error::{Error, Result};
 use crate::primitive::course::Travel;
@@ -13,6 +13,10 @@ const SETTLING: f64 = 0.98;
 const PHASE_GAIN: f64 = 4.0;
 /// Bounds of the phase's rate, as multiples of the field's own: it never stands, so that every movement ends.
 const PHASE_RATES: [f64; 2] = [0.5, 2.0];
+/// The phase is lost where the posture is this many times as far from the manifold there as elsewhere ...
+const LOST: f64 = 1.5;
+/// ... and this much, radians.
+const LOST_RAD: f64 = 0.03;
 /// Bounds of a pace that is learned from observation.
 const PACES: [f64; 2] = [0.5, 2.0];
 /// A difference of velocities counts as much as that of postures this much later, seconds.
@@ -155,7 +159,14 @@ impl Flowfield {
     fn entry(&self, pose: &[f64], velocity: Option<&[f64]>) -> Result<FlowState> {
         self.check(pose)?;
         let pose = self.named(pose);
-        let query = self.query(&pose);
+        let found = self.nearest_entry(&pose, velocity);
+        let phase = self.on_curve(self.samples.phase(&found));
+        Ok(self.state(pose, phase))
+    }
+
+    /// The nearest place of all courses to a posture, and to a velocity where one is known.
+    fn nearest_entry(&self, pose: &[f64], velocity: Option<&[f64]>) -> Match {
+        let query = self.query(pose);
         let moving = velocity.map(|v| self.direction(v));
         let pieces = self.samples.pieces() as f64;
         let late = if self.cyclic { 0.0 } else { LATE_RAD / pieces };
@@ -172,8 +183,7 @@ impl Flowfield {
                 cost
             },
         );
-        let phase = self.on_curve(self.samples.phase(&found.as_slice()[0]));
-        Ok(self.state(pose, phase))
+        found.as_slice()[0]
     }
 
     /// Adds what the velocity of the samples at a place differs from `velocity`.
@@ -362,7 +372,8 @@ impl Flowfield {
 
     /// Blends a measured posture into a state: posture, phase and parameters go the share `gain` (0 to 1) of the way from
     /// what the field predicted to what was measured, and the pace follows. With 1 the lag of whatever follows the field would stall it, with 0 nothing
-    /// is learned of disturbances; 0.2 serves a robot, more serves an observer.
+    /// is learned of disturbances; 0.2 serves a robot, 0.5 an observer. Where the posture is clearly nearer to the manifold
+    /// at another phase, the phase was lost, and the state is entered anew.
     ///
     /// # Errors
     /// As [`Self::enter`], and when the gain is not in [0, 1].
@@ -376,6 +387,14 @@ impl Flowfield {
         let measured = self.named(measured);
         if self.settings.memory == Memory::Phase {
             let seen = self.near(&measured, state.phase, &state.parameters);
+            let here = self.point(&seen.shares, seen.phase).pose;
+            let elsewhere = self.nearest_entry(&measured, None);
+            let lost = LOST * elsewhere.cost.sqrt() + LOST_RAD;
+            if self.distance_rad(&measured, &here) > lost {
+                let phase = self.on_curve(self.samples.phase(&elsewhere));
+                *state = self.state(measured, phase);
+                return Ok(());
+            }
             let ahead = seen.phase - state.phase;
             if self.settings.learn_pace && state.advanced > 0.0 {
                 // The gains of a tracker of place and velocity (Benedict and Bordner 1962).

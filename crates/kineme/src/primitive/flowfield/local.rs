@@ -126,7 +126,8 @@ impl Flowfield {
                 *c += w * (v - p) * off;
             }
         }
-        // Least squares in the shift's coefficients: postures and remembered parameters, each with its weight.
+        // Least squares in the shift's coefficients: postures and remembered parameters, each with its weight. What the
+        // manifold leaves of the posture is noise: the larger it is, the nearer the neighbours' mean.
         let stiff = self.stiffness();
         let mut normal = stiff * spread * spread;
         let mut right = stiff * spread * (column(about) - middle);
@@ -134,6 +135,7 @@ impl Flowfield {
             normal += c * c.transpose();
             right += (q - p) * c;
         }
+        normal += found[0].cost * spread;
         let floor = 1e-9 * normal.trace() + f64::MIN_POSITIVE;
         for d in 0..MOST_AFFINE {
             normal[(d, d)] += if d < self.dims { floor } else { 1.0 };
