@@ -54,18 +54,24 @@ pub fn waves(back: Return) -> Result<Vec<Exemplar>> {
     let body = Arc::new(kineme::body(&script.body)?);
     joined(&script, back)?
         .into_iter()
-        .map(|(parameters, keys)| {
-            let motion = perform("wave", &keys, &body, RATE_HZ)?;
+        .map(|wave| {
+            let motion = perform("wave", &wave.keys, &body, RATE_HZ)?;
             Ok(Exemplar {
-                adverbs: Some(parameters.into_values().collect()),
+                adverbs: Some(wave.parameters.into_values().collect()),
                 ..exemplar(&motion)
             })
         })
         .collect()
 }
 
-/// Parameters and keys of each wave across with its return behind it.
-fn joined(script: &Script, back: Return) -> Result<Vec<(BTreeMap<String, f64>, Vec<Key>)>> {
+/// A wave across with its return behind it.
+struct Wave {
+    parameters: BTreeMap<String, f64>,
+    keys: Vec<Key>,
+}
+
+/// Each wave across of the script with a return.
+fn joined(script: &Script, back: Return) -> Result<Vec<Wave>> {
     let (across, home): (Vec<_>, Vec<_>) = script
         .exemplars
         .iter()
@@ -89,7 +95,10 @@ fn joined(script: &Script, back: Return) -> Result<Vec<(BTreeMap<String, f64>, V
                 }))
             }
         }
-        Ok((out.parameters.clone(), keys))
+        Ok(Wave {
+            parameters: out.parameters.clone(),
+            keys,
+        })
     };
     across.iter().map(join).collect()
 }
