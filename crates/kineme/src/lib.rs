@@ -52,6 +52,59 @@
 //! # }
 //! ```
 //!
+//! # A primitive, asked and followed
+//!
+//! Four reaches of one hand, to two heights and two sides, are a primitive of two parameters. Between them it makes
+//! reaches that nobody wrote, brings the hand to a point, and goes on from any posture.
+//!
+//! ```
+//! # use std::collections::BTreeMap;
+//! # use std::sync::Arc;
+//! use kineme::choreography::{Key, Script, ScriptExemplar};
+//! use kineme::primitive::{FlowSettings, Flowfield};
+//! use kineme::{Modelling, Role, Synthesis, adonis};
+//!
+//! # fn main() -> kineme::Result<()> {
+//! let key = |time: f64, arm: [f64; 3], elbow: f64| Key {
+//!     time,
+//!     angles: BTreeMap::from([(Role::RightUpperArm, arm.to_vec()), (Role::RightLowerArm, vec![elbow])]),
+//! };
+//! let reach = |height: f64, side: f64| ScriptExemplar {
+//!     primitive: "reach".into(),
+//!     parameters: BTreeMap::from([("height".into(), height), ("side".into(), side)]),
+//!     keys: vec![
+//!         key(0.0, [10.0, 5.0, 0.0], 90.0),
+//!         key(0.5, [40.0 + 60.0 * height, 5.0 + 40.0 * side, 0.0], 15.0),
+//!         key(1.0, [10.0, 5.0, 0.0], 90.0),
+//!     ],
+//! };
+//! let script = Script {
+//!     body: "adonis".into(),
+//!     exemplars: vec![reach(0.0, 0.0), reach(0.0, 1.0), reach(1.0, 0.0), reach(1.0, 1.0)],
+//!     animations: vec![],
+//! };
+//! let body = Arc::new(adonis()?);
+//! let vocabulary = script.vocabulary(&body, &Modelling::default(), ("reaches", None))?;
+//! let primitive = vocabulary.primitive("reach")?;
+//!
+//! let course = Arc::new(primitive.at(&[0.3, 0.6])?); // f(p, .)
+//! let halfway: Vec<f64> = course.pose(0.5); // f(p, 0.5), one number a coordinate
+//! assert_eq!(halfway.len(), body.dof());
+//!
+//! let aim = primitive.aim("right_hand")?;
+//! let target = aim.position(&[0.7, 0.2], aim.extreme(&[0.7, 0.2])?)?;
+//! assert!(aim.at(&target).miss_m < 1e-3);
+//!
+//! let field = Flowfield::of(primitive, &FlowSettings::default())?;
+//! let ahead = field.predict(&field.enter(&course.pose(0.2))?, 0.3, 60.0)?;
+//! assert_eq!(ahead.len(), 18);
+//!
+//! let made = Synthesis::default().motion("a reach", &course)?; // the fold of a robot's steps
+//! assert!((made.motion.duration_secs() - course.duration_secs()).abs() < 0.01);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # From recordings
 //!
 //! A file becomes a [`Recording`]: its own skeleton, in metres with z up, gaps included. [`retargeting::retarget`]

@@ -476,18 +476,16 @@ fn observation_brings_phase_and_posture_to_what_is_seen() {
     // The movement is seen at 0.7 of its speed, from a state that is wrong in parameters.
     let mut state = field.enter_at(&course.pose(0.0), 0.0).expect("a state");
     let mut phase = 0.0;
-    for _ in 0..40 {
+    for frame in 0..45 {
         field.step(&mut state, 1.0 / 30.0);
         phase = course.advance(phase, 0.7 / 30.0);
         field
             .observe(&mut state, &course.pose(phase), 0.5)
             .expect("a pose");
-        assert!(
-            (state.phase() - phase).abs() < 0.06,
-            "{phase}: {}",
-            state.phase()
-        );
+        let off = (state.phase() - phase).abs();
+        assert!(off < if frame < 20 { 0.1 } else { 0.05 }, "{phase}: {off}");
     }
+    assert!((state.pace() - 0.7).abs() < 0.15, "{}", state.pace());
     assert!(field.distance_rad(state.pose(), &course.pose(phase)) < 0.05);
     let gap: f64 = state
         .parameters()

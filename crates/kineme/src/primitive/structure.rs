@@ -90,5 +90,9 @@ pub(super) fn foreign(
             None => {}
         }
     }
+    // Somebody must be of the structure that the others lack.
+    foreign
+        .refused
+        .retain(|(i, _)| *i != phased.registered.medoid);
     Ok(foreign)
 }

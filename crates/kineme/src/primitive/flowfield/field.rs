@@ -252,7 +252,23 @@ fn points(primitive: &Primitive, asked: Option<usize>) -> Vec<f64> {
             found += 1;
         }
     }
-    points
+    // Courses that are scanned together are neighbours, so that most of them are left out together.
+    let mut order: Vec<&[f64]> = points.chunks_exact(dims).collect();
+    order.sort_by_key(|p| interleaved(p));
+    order.concat()
+}
+
+/// The place of a point on the curve of interleaved binary digits (Morton 1966).
+fn interleaved(point: &[f64]) -> u64 {
+    const DIGITS: u32 = 8;
+    let mut key = 0;
+    for digit in (0..DIGITS).rev() {
+        for p in point {
+            let level = (p.clamp(0.0, 1.0) * f64::from((1 << DIGITS) - 1)) as u64;
+            key = key << 1 | (level >> digit & 1);
+        }
+    }
+    key
 }
 
 /// The radical inverse of `index` + 1 in a base (Halton 1960).

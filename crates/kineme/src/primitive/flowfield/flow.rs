@@ -2,13 +2,15 @@
 
 use super::field::Flowfield;
 use super::local::{Place, Point};
-use super::samples::{LANES, MOST_AXES, Match};
+use super::samples::{LANES, MOST_AXES, Match, Prior};
 use super::settings::Memory;
 use crate::error::{Error, Result};
 use crate::primitive::course::Travel;
 
-/// The phase from which a movement that is no cycle settles at its end.
-const SETTLING: f64 = 0.98;
+/// The phase at which a movement that is no cycle has come to its end.
+pub(super) const END: f64 = 0.98;
+/// How fast phase and posture settle at the end at most, as a share of what is left, 1/s.
+const SETTLING_RATE: f64 = 25.0;
 /// How fast the phase goes to where the posture is, 1/s.
 const PHASE_GAIN: f64 = 4.0;
 /// Bounds of the phase's rate, as multiples of the field's own: it never stands, so that every movement ends.
@@ -25,7 +27,7 @@ const VELOCITY_SECS: f64 = 0.15;
 /// one begins.
 const LATE_RAD: f64 = 0.05;
 /// Steps longer than this are taken in parts, seconds.
-const LONGEST_STEP: f64 = 0.02;
+const LONGEST_STEP: f64 = 0.034;
 /// States that a prediction may have.
 const MOST_STATES: f64 = 1e6;
 
@@ -241,12 +243,12 @@ impl Flowfield {
         let mut tangent: Vec<f64> = point.slope.iter().map(|s| s * rate).collect();
         let pull = self.settings.correction;
         let mut velocity: Vec<f64> = gap.normal.iter().map(|r| pull * r).collect();
-        let finished = !self.cyclic && state.phase >= SETTLING;
-        if finished {
+        let rest = SETTLING_RATE * (1.0 - state.phase);
+        if !self.cyclic && rest < phase_rate {
             // The flow dies down to a goal attractor; the phase comes to its end as the movement does.
-            let left = ((1.0 - state.phase) / (1.0 - SETTLING)).clamp(0.0, 1.0);
+            let left = (rest / phase_rate).max(0.0);
+            phase_rate *= left;
             let end = self.point(&place.shares, 1.0).pose;
-            phase_rate = rate * left;
             for (t, (v, (e, x))) in tangent
                 .iter_mut()
                 .zip(velocity.iter_mut().zip(end.iter().zip(&state.pose)))
@@ -269,7 +271,7 @@ impl Flowfield {
             travel: point.travel,
             distance_rad: gap.distance_rad,
             out_of_basin: gap.distance_rad > self.settings.basin_rad,
-            finished,
+            finished: !self.cyclic && state.phase >= END,
         }
     }
 
@@ -277,23 +279,17 @@ impl Flowfield {
     fn near(&self, pose: &[f64], phase: f64, parameters: &[f64]) -> Place {
         let query = self.query(pose);
         let window = self.samples.around(phase, self.settings.window);
-        let pieces = self.samples.pieces() as f64;
-        let stiff = (self.settings.sigma_rad / self.settings.sigma).powi(2);
+        let prior = Prior {
+            phase,
+            stiffness: (self.settings.sigma_rad / self.settings.sigma).powi(2),
+        };
         let most = self.settings.neighbours + 1;
-        let matches = self.samples.nearest(
-            &query,
-            window,
-            most,
-            |block| self.parameter_cost(block, parameters),
-            |_, at| {
-                let off = at as f64 / pieces - phase;
-                [stiff * off * off; LANES]
-            },
-        );
+        let own = |block| self.parameter_cost(block, parameters);
+        let matches = self.samples.nearest_to(&query, window, most, own, prior);
         self.place(&query, parameters, &matches)
     }
 
-    /// Takes a state `dt_secs` further: the midpoint rule (Runge and Kutta's second order), in parts of at most 20 ms.
+    /// Takes a state `dt_secs` further: the midpoint rule (Runge and Kutta's second order), in parts of at most 34 ms.
     /// Returns what the field said of the state before. Postures out of the basin are drawn back by the correction alone;
     /// [`Self::approach`] is the smooth way.
     ///
@@ -387,11 +383,7 @@ impl Flowfield {
         let measured = self.named(measured);
         if self.settings.memory == Memory::Phase {
             let seen = self.near(&measured, state.phase, &state.parameters);
-            let here = self.point(&seen.shares, seen.phase).pose;
-            let elsewhere = self.nearest_entry(&measured, None);
-            let lost = LOST * elsewhere.cost.sqrt() + LOST_RAD;
-            if self.distance_rad(&measured, &here) > lost {
-                let phase = self.on_curve(self.samples.phase(&elsewhere));
+            if let Some(phase) = self.elsewhere(&measured, &seen) {
                 *state = self.state(measured, phase);
                 return Ok(());
             }
@@ -411,6 +403,18 @@ impl Flowfield {
             *x += gain * (m - *x);
         }
         Ok(())
+    }
+
+    /// The phase at which a posture is clearly nearer to the manifold than at the place where it was sought.
+    fn elsewhere(&self, pose: &[f64], sought: &Place) -> Option<f64> {
+        let there = self.point(&sought.shares, sought.phase).pose;
+        let far = self.distance_rad(pose, &there);
+        if far <= LOST_RAD {
+            return None;
+        }
+        let found = self.nearest_entry(pose, None);
+        let lost = far > LOST * found.cost.sqrt() + LOST_RAD;
+        lost.then(|| self.on_curve(self.samples.phase(&found)))
     }
 
     fn check(&self, coordinates: &[f64]) -> Result<()> {

@@ -7,7 +7,7 @@ use super::samples::{MOST_AXES, MOST_NEIGHBOURS, Matches};
 use crate::primitive::course::{EXTRA, LOG_SECS, Travel};
 
 /// Parameters at most for which the model is affine in them.
-const MOST_AFFINE: usize = 6;
+const MOST_AFFINE: usize = 4;
 /// How far from the neighbours' mean their affine model is trusted, in squared standard deviations.
 const FARTHEST: f64 = 4.0;
 

@@ -1,13 +1,10 @@
 //! The field of the paper: no phase is carried.
 
 use super::field::Flowfield;
-use super::flow::{FlowState, Gap, Update};
+use super::flow::{END, FlowState, Gap, Update};
 use super::local::Point;
 use super::samples::{LANES, Match, Matches};
 use crate::primitive::course::Travel;
-
-/// The phase at which a movement that is no cycle has come to its end.
-const END: f64 = 0.98;
 
 impl Flowfield {
     /// The mean flow of the nearest samples, whatever their phase, and the correction toward them.
