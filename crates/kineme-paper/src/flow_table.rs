@@ -85,11 +85,7 @@ pub fn follow(
     let truth = set.motions[fold.left_out].resampled(RATE_HZ)?;
     let starts = starts(&truth, primitive.is_cyclic());
     let phase = Flowfield::of(primitive, settings)?;
-    let paper = FlowSettings {
-        memory: kineme::primitive::Memory::None,
-        ..settings.clone()
-    };
-    let paper = Flowfield::of(primitive, &paper)?;
+    let paper = Flowfield::of(primitive, &FlowSettings::paper())?;
     // Of each predictor, the postures at all horizons of all starts in turn.
     let mut poses: [Vec<f64>; 4] = Default::default();
     let begin = first_frame(&truth, primitive.is_cyclic());

@@ -64,7 +64,7 @@ impl Default for FlowSettings {
             correction: 2.0,
             window: [0.03, 0.12],
             sigma: 0.015,
-            sigma_parameters: 0.5,
+            sigma_parameters: 1.0,
             sigma_rad: 0.05,
             learn_pace: true,
             basin_rad: 0.6,
@@ -73,10 +73,11 @@ impl Default for FlowSettings {
 }
 
 impl FlowSettings {
-    /// The settings of the paper's field: the same without memory.
+    /// The settings of the paper's field: without memory, and drawn to the manifold as strongly as serves it best.
     pub fn paper() -> Self {
         Self {
             memory: Memory::None,
+            correction: 4.0,
             ..Self::default()
         }
     }
