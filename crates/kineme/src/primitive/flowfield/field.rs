@@ -39,6 +39,8 @@ pub struct Flowfield {
     pub(super) interpolator: Interpolator,
     /// Parameters of each course, courses x parameters.
     pub(super) points: Vec<f64>,
+    /// The same, `[block][parameter]` of lanes.
+    point_lanes: Vec<Lane>,
     /// The middle of the exemplars' parameters.
     pub(super) centre: Vec<f64>,
     pub(super) dims: usize,
@@ -115,6 +117,13 @@ impl Flowfield {
                 paces.push(std::array::from_fn(of));
             }
         }
+        let mut point_lanes = Vec::with_capacity(samples.blocks() * dims);
+        for block in 0..samples.blocks() {
+            for d in 0..dims {
+                let of = |lane: usize| points[(block * LANES + lane).min(courses - 1) * dims + d];
+                point_lanes.push(std::array::from_fn(of));
+            }
+        }
         let balls = (0..body.joints().len())
             .map(|j| body.coordinates(j))
             .filter(|at| at.len() == 3)
@@ -126,6 +135,7 @@ impl Flowfield {
             curves,
             interpolator: primitive.interpolator().clone(),
             points,
+            point_lanes,
             centre: primitive.middle(),
             dims,
             weights,
@@ -186,14 +196,17 @@ impl Flowfield {
     }
 
     /// What the parameters of the courses of a block cost, seen from `parameters`.
+    #[inline(always)]
     pub(super) fn parameter_cost(&self, block: usize, parameters: &[f64]) -> Lane {
         let stiff = self.stiffness();
-        std::array::from_fn(|lane| {
-            let course = (block * LANES + lane).min(self.samples.courses() - 1);
-            let point = &self.points[course * self.dims..(course + 1) * self.dims];
-            let gaps = point.iter().zip(parameters).map(|(a, b)| a - b);
-            stiff * gaps.map(|g| g * g).sum::<f64>()
-        })
+        let mut cost = [0.0; LANES];
+        let rows = &self.point_lanes[block * self.dims..(block + 1) * self.dims];
+        for (row, p) in rows.iter().zip(parameters) {
+            for (c, v) in cost.iter_mut().zip(row) {
+                *c += stiff * (v - p) * (v - p);
+            }
+        }
+        cost
     }
 
     /// What squared parameters count beside squared radians.

@@ -6,11 +6,13 @@
 //! postures is followed out and back; the memoryless field of the paper, which stalls there, is [`Memory::None`].
 
 mod approach;
+mod entry;
 mod field;
 mod flow;
 mod local;
 mod memoryless;
 mod samples;
+mod scan;
 mod settings;
 
 pub use approach::Approach;
