@@ -15,7 +15,7 @@ pub enum Pace {
     /// At its own pace times this.
     Times(f64),
     /// So that everything, joining it included, takes so many seconds. A body that is too far away for that joins
-    /// faster than [`Inertialization::max_speed`].
+    /// faster than [`super::Inertialization::max_speed`].
     Secs(f64),
 }
 

@@ -64,7 +64,7 @@ impl Default for FlowSettings {
             correction: 2.0,
             window: [0.03, 0.12],
             sigma: 0.015,
-            sigma_parameters: 1.0,
+            sigma_parameters: 0.5,
             sigma_rad: 0.05,
             learn_pace: true,
             basin_rad: 0.6,
