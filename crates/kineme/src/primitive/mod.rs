@@ -9,6 +9,7 @@ mod flowfield;
 mod judge;
 mod model;
 mod modelling;
+mod parametrising;
 mod registered;
 mod selection;
 mod space;
