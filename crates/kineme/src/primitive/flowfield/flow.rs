@@ -1,11 +1,11 @@
 //! Following the field: where it goes from a posture, step by step and over a horizon.
 
 use super::field::Flowfield;
-use super::local::{Place, Point};
+use super::local::Place;
 use super::samples::Prior;
 use super::settings::Memory;
 use crate::error::{Error, Result};
-use crate::primitive::course::Travel;
+use crate::primitive::course::{Sample, Travel};
 
 /// The phase at which a movement that is no cycle has come to its end.
 pub(super) const END: f64 = 0.98;
@@ -265,7 +265,7 @@ pub(super) struct Gap {
 }
 
 impl Gap {
-    pub fn between(field: &Flowfield, pose: &[f64], point: &Point) -> Self {
+    pub fn between(field: &Flowfield, pose: &[f64], point: &Sample) -> Self {
         let mut normal: Vec<f64> = point.pose.iter().zip(pose).map(|(m, x)| m - x).collect();
         let product = |a: &[f64], b: &[f64]| -> f64 {
             let pairs = a.iter().zip(b).zip(&field.weights);

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::field::Flowfield;
 use super::samples::{MOST_AXES, MOST_NEIGHBOURS, Matches};
-use crate::primitive::course::{EXTRA, LOG_SECS, Travel};
+use crate::primitive::course::{Sample, sample};
 
 /// Parameters at most for which the model is affine in them.
 const MOST_AFFINE: usize = 4;
@@ -18,15 +18,6 @@ pub(super) struct Place {
     pub parameters: Vec<f64>,
     /// As the window counts: in a cycle not wrapped.
     pub phase: f64,
-}
-
-/// What the primitive is at a place.
-pub(super) struct Point {
-    pub pose: Vec<f64>,
-    /// Derivative of the pose by phase.
-    pub slope: Vec<f64>,
-    pub secs_per_phase: f64,
-    pub travel: Travel,
 }
 
 impl Flowfield {
@@ -154,28 +145,9 @@ impl Flowfield {
     }
 
     /// What the primitive is at a place.
-    pub(super) fn point(&self, shares: &[f64], phase: f64) -> Point {
-        let dof = self.body.dof();
-        let phase = self.on_curve(phase);
-        let mut pose = vec![0.0; dof];
-        let mut slope = vec![0.0; dof];
-        let mut extra = [0.0; EXTRA];
-        for (curve, &share) in self.curves.iter().zip(shares) {
-            curve.add(phase, share, 0, &mut pose);
-            curve.add_slope(phase, share, 0, &mut slope);
-            curve.add(phase, share, dof, &mut extra);
-        }
-        Point {
-            pose,
-            slope,
-            secs_per_phase: extra[LOG_SECS].exp(),
-            travel: Travel {
-                forward: extra[0],
-                left: extra[1],
-                height: extra[2],
-                yaw_rate: extra[3],
-            },
-        }
+    pub(super) fn point(&self, shares: &[f64], phase: f64) -> Sample {
+        let curves = self.curves.iter().zip(shares.iter().copied());
+        sample(curves, self.body.dof(), self.on_curve(phase))
     }
 
     pub(super) fn on_curve(&self, phase: f64) -> f64 {

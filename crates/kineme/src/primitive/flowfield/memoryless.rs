@@ -2,8 +2,8 @@
 
 use super::field::Flowfield;
 use super::flow::{END, FlowState, Gap, Update};
-use super::local::Point;
 use super::samples::{LANES, Match, Matches};
+use crate::primitive::course::Sample;
 use crate::primitive::course::Travel;
 
 impl Flowfield {
@@ -13,7 +13,7 @@ impl Flowfield {
         let (kernel, k) = self.kernel(&matches);
         let n = self.curves.len();
         let dof = self.body.dof();
-        let mut mean = Point {
+        let mut mean = Sample {
             pose: vec![0.0; dof],
             slope: vec![0.0; dof],
             secs_per_phase: 0.0,
