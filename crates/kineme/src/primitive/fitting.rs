@@ -41,11 +41,7 @@ pub(super) fn fit(
     let mut notes = Vec::new();
     let phased = loop {
         let phased = phased(&exemplars, modelling)?;
-        let registration = Registration {
-            cyclic: phased.cyclic,
-            ..modelling.registration.clone()
-        };
-        let found = foreign(&exemplars, &phased, &registration)?;
+        let found = foreign(&exemplars, &phased)?;
         let told = |(i, what): &(usize, &str)| format!("{} {what}", exemplars[*i].label());
         if found.refused.is_empty() {
             notes.extend(found.told.iter().map(told));
@@ -107,10 +103,11 @@ pub(super) fn interpolated(
 
 /// Exemplars on the way to phase.
 pub(super) struct Phased {
-    pub cyclic: bool,
+    cyclic: bool,
     used: Vec<Used>,
     /// Landmarks of the part that is used.
     pub sequences: Vec<Vec<f64>>,
+    pub registration: Registration,
     pub registered: Registered,
 }
 
@@ -151,6 +148,7 @@ fn phased(exemplars: &[Exemplar], modelling: &Modelling) -> Result<Phased> {
         cyclic,
         used,
         sequences,
+        registration,
         registered,
     })
 }
@@ -206,7 +204,7 @@ fn modelled(
         knots,
         space: ParameterSpace::new(Vec::new(), ParameterSource::Adverbs)?,
         points: Vec::new(),
-        method: crate::interpolation::Method::Shepard { power: 2.0 },
+        method: Method::Shepard { power: 2.0 },
         trials: Vec::new(),
         error: None,
         notes: Vec::new(),

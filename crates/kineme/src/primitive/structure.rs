@@ -3,7 +3,7 @@
 use super::exemplar::Exemplar;
 use super::fitting::Phased;
 use super::modelling::Used;
-use crate::alignment::{Cycle, Mismatch, Registration, cycle, cycles, period};
+use crate::alignment::{Cycle, Mismatch, cycle, cycles, period};
 use crate::error::Result;
 use crate::motion::{landmark_dims, mirror_landmarks};
 
@@ -56,11 +56,7 @@ pub(super) struct Foreign {
     pub told: Vec<(usize, &'static str)>,
 }
 
-pub(super) fn foreign(
-    exemplars: &[Exemplar],
-    phased: &Phased,
-    registration: &Registration,
-) -> Result<Foreign> {
+pub(super) fn foreign(exemplars: &[Exemplar], phased: &Phased) -> Result<Foreign> {
     let mut foreign = Foreign {
         refused: Vec::new(),
         told: Vec::new(),
@@ -76,8 +72,12 @@ pub(super) fn foreign(
         .collect();
     let borrowed: Vec<&[f64]> = phased.sequences.iter().map(Vec::as_slice).collect();
     let images: Vec<&[f64]> = mirrored.iter().map(Vec::as_slice).collect();
-    let found =
-        registration.structures(&borrowed, &images, &phased.registered, landmark_dims(body))?;
+    let found = phased.registration.structures(
+        &borrowed,
+        &images,
+        &phased.registered,
+        landmark_dims(body),
+    )?;
     for (i, (_, mismatch)) in found.into_iter().enumerate() {
         match mismatch {
             Some(Mismatch::Mirrored) => foreign
