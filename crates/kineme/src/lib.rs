@@ -119,7 +119,7 @@
 //!
 //! A module imports from modules below it and from none beside it:
 //! [`math`], [`error`]; [`skeleton`], [`motion`]; [`segmentation`], [`alignment`], [`embedding`], [`clustering`],
-//! [`interpolation`], [`retargeting`]; [`primitive`]; [`derivation`], [`choreography`]; [`control`].
+//! [`interpolation`], [`retargeting`]; [`primitive`]; [`derivation`], [`choreography`]; [`control`], [`perception`], [`evaluation`].
 
 pub mod alignment;
 pub mod choreography;
@@ -128,9 +128,11 @@ pub mod control;
 pub mod derivation;
 pub mod embedding;
 pub mod error;
+pub mod evaluation;
 pub mod interpolation;
 pub mod math;
 pub mod motion;
+pub mod perception;
 pub mod primitive;
 pub mod retargeting;
 pub mod segmentation;

@@ -10,6 +10,7 @@ mod judge;
 mod model;
 mod modelling;
 mod parametrising;
+mod recognition;
 mod registered;
 mod selection;
 mod space;
@@ -24,6 +25,10 @@ pub use flowfield::{Approach, FlowSettings, FlowState, Flowfield, Memory, Metric
 pub use model::{Group, Primitive};
 pub use modelling::{
     Fit, Interpolation, LeaveOneOut, Mismatched, Modelling, Parameterisation, Trial, Used,
+};
+pub use recognition::{
+    Listener, Observation, Observations, Place, Posterior, Reading, Recogniser, Recognition, Span,
+    readings,
 };
 pub use space::{ParameterAxis, ParameterSource, ParameterSpace};
 pub use vocabulary::{Behavior, Transitions, Vocabulary};
