@@ -1,0 +1,5 @@
+//! Metrics over clips and streams, and the baselines beside which recognisers stand.
+
+mod baselines;
+mod clips;
+mod streams;
