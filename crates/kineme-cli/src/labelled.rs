@@ -18,14 +18,14 @@ use crate::vocabularies::read_bytes;
 /// A manifest and where its files lie.
 pub struct Manifest {
     name: String,
-    /// The rows that have a label.
+    /// The rows that are looked at.
     rows: Vec<Labelled>,
     root: PathBuf,
 }
 
 /// An exemplar and what the manifest says of it.
 pub struct Example {
-    /// The primitive that it belongs to.
+    /// The primitive that it belongs to; empty for a negative.
     pub label: String,
     /// The movement.
     pub exemplar: Exemplar,
@@ -42,24 +42,30 @@ struct Taken {
 }
 
 impl Manifest {
-    /// Reads a manifest; its files lie in `root`, else beside it.
+    /// Reads a manifest for its exemplars; its files lie in `root`, else beside it. Rows without a label are passed over.
     pub fn open(path: &Path, root: Option<&Path>) -> Result<Self, Failure> {
-        let (name, bytes) = read_bytes(path, "a readable manifest")?;
-        let mut rows = manifest::parse(&name, &bytes)?;
-        let all = rows.len();
-        rows.retain(|row| row.label.is_some());
-        if rows.is_empty() {
+        let mut manifest = Self::open_with_negatives(path, root)?;
+        let all = manifest.rows.len();
+        manifest.rows.retain(|row| row.label.is_some());
+        if manifest.rows.is_empty() {
             let found = format!("{all} rows without a label");
             let expected = "labels: the names of primitives";
-            return Err(FormatError::new(&name, Place::File, found, expected).into());
+            return Err(FormatError::new(&manifest.name, Place::File, found, expected).into());
         }
-        match all - rows.len() {
+        match all - manifest.rows.len() {
             0 => {}
             1 => complain("note: 1 row has no label: a negative, no exemplar, and ignored here"),
             n => complain(&format!(
                 "note: {n} rows have no label: negatives, no exemplars, and ignored here"
             )),
         }
+        Ok(manifest)
+    }
+
+    /// As [`Self::open`], with the rows that have no label.
+    pub fn open_with_negatives(path: &Path, root: Option<&Path>) -> Result<Self, Failure> {
+        let (name, bytes) = read_bytes(path, "a readable manifest")?;
+        let rows = manifest::parse(&name, &bytes)?;
         let beside = || path.parent().unwrap_or(Path::new("")).to_owned();
         Ok(Self {
             name,

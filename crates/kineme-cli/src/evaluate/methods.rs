@@ -1,0 +1,40 @@
+//! The recognisers that can be judged.
+
+use clap::ValueEnum;
+use kineme::Vocabulary;
+use kineme::evaluation::{
+    Constant, NearestDtw, NearestDtwSettings, NearestPosture, NearestPostureSettings,
+};
+use kineme::primitive::Recogniser;
+
+use crate::args::MethodName;
+
+/// The recogniser of this name over a vocabulary, with its defaults.
+pub(super) fn recogniser(
+    name: MethodName,
+    vocabulary: &Vocabulary,
+) -> kineme::Result<Box<dyn Recogniser + '_>> {
+    Ok(match name {
+        MethodName::NearestDtw => {
+            Box::new(NearestDtw::new(vocabulary, &NearestDtwSettings::default())?)
+        }
+        MethodName::NearestPosture => Box::new(NearestPosture::new(
+            vocabulary,
+            &NearestPostureSettings::default(),
+        )?),
+        MethodName::Constant => Box::new(Constant::new(vocabulary)?),
+    })
+}
+
+/// Whether a method ever answers that a movement is none of the primitives.
+pub(super) fn can_reject(method: MethodName) -> bool {
+    match method {
+        MethodName::NearestDtw | MethodName::NearestPosture | MethodName::Constant => false,
+    }
+}
+
+/// What the command line calls it.
+pub(super) fn name(method: MethodName) -> String {
+    let value = method.to_possible_value();
+    value.map_or_else(String::new, |v| v.get_name().to_owned())
+}
