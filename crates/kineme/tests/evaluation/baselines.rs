@@ -151,9 +151,7 @@ fn exemplars_are_not_novel_and_strangers_are() {
         for primitive in VOCABULARY.primitives() {
             for (e, exemplar) in primitive.exemplars().iter().enumerate() {
                 let (own, parameters) = novelty(&exemplar.motion);
-                // Postures of exemplars are kept at a lower rate, so that frames between them are a little off.
-                let limit = if name == "posture" { 0.7 } else { 1e-3 };
-                assert!(own < limit, "{name}: an exemplar is {own} novel");
+                assert!(own < 1e-3, "{name}: an exemplar is {own} novel");
                 if name == "dtw" {
                     assert_eq!(parameters, primitive.point(e));
                 }

@@ -7,7 +7,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use crate::error::{Error, Result};
 use crate::motion::{Motion, landmark_dims};
 use crate::primitive::{Observation, Observations};
-use crate::skeleton::{Root, Skeleton};
+use crate::skeleton::{Role, Root, Skeleton};
 
 /// What postures are compared by: positions in metres, the root's place and heading removed.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -15,7 +15,8 @@ pub enum Features {
     /// All landmarks of the body ([`Motion::landmarks`]).
     #[default]
     Landmarks,
-    /// These effectors alone, from the middle of the shoulders, turned by the heading of the thorax.
+    /// These effectors alone, from the middle of the shoulders, turned until the line of the shoulders lies across. A trunk
+    /// that bows keeps this heading, where the way its front faces is soon none.
     Effectors(Vec<String>),
 }
 
@@ -23,8 +24,16 @@ pub enum Features {
 #[derive(Debug, Clone)]
 pub(super) struct Extractor {
     body: Arc<Skeleton>,
-    /// Indices of effectors; `None`: all landmarks.
-    effectors: Option<Vec<usize>>,
+    /// What is looked at; `None`: all landmarks.
+    effectors: Option<FromShoulders>,
+}
+
+/// Effectors, and the joints that they are seen from.
+#[derive(Debug, Clone)]
+struct FromShoulders {
+    /// Left, then right.
+    shoulders: [usize; 2],
+    effectors: Vec<usize>,
 }
 
 impl Extractor {
@@ -33,14 +42,8 @@ impl Extractor {
     pub fn new(body: &Arc<Skeleton>, features: &Features) -> Result<Self> {
         let effectors = match features {
             Features::Landmarks => None,
-            Features::Effectors(names) => {
-                let found = names.iter().map(|name| body.effector(name));
-                Some(found.collect::<Result<Vec<usize>>>()?)
-            }
+            Features::Effectors(names) => Some(FromShoulders::new(body, names)?),
         };
-        if let Some(&first) = effectors.as_deref().and_then(<[usize]>::first) {
-            body.reach(first)?;
-        }
         let extractor = Self {
             body: Arc::clone(body),
             effectors,
@@ -58,7 +61,7 @@ impl Extractor {
     pub fn dims(&self) -> usize {
         match &self.effectors {
             None => landmark_dims(&self.body),
-            Some(effectors) => 3 * effectors.len(),
+            Some(seen) => 3 * seen.effectors.len(),
         }
     }
 
@@ -74,8 +77,8 @@ impl Extractor {
         let motion = Motion::new("", Arc::clone(&self.body), 1.0, poses, roots)?;
         match &self.effectors {
             None => Ok(motion.landmarks()),
-            Some(effectors) => Ok((0..motion.frames())
-                .flat_map(|f| self.from_shoulders(&motion, f, effectors))
+            Some(seen) => Ok((0..motion.frames())
+                .flat_map(|f| seen.places(&motion, f))
                 .collect()),
         }
     }
@@ -90,20 +93,46 @@ impl Extractor {
         }
         self.of_poses(poses)
     }
+}
 
-    fn from_shoulders(&self, motion: &Motion, frame: usize, effectors: &[usize]) -> Vec<f64> {
+impl FromShoulders {
+    fn new(body: &Skeleton, names: &[String]) -> Result<Self> {
+        let shoulder = |role: Role| {
+            let joint = body.joints_of(role).first().copied();
+            joint.ok_or_else(|| {
+                Error::unsupported(format!(
+                    "`{}` has no {} to see effectors from",
+                    body.name(),
+                    role.name()
+                ))
+            })
+        };
+        let effectors = names.iter().map(|name| body.effector(name));
+        Ok(Self {
+            shoulders: [
+                shoulder(Role::LeftUpperArm)?,
+                shoulder(Role::RightUpperArm)?,
+            ],
+            effectors: effectors.collect::<Result<_>>()?,
+        })
+    }
+
+    /// The effectors of a frame.
+    fn places(&self, motion: &Motion, frame: usize) -> Vec<f64> {
         let frames = motion.frames_at(frame);
-        let thorax = self.body.thorax(&frames).unwrap_or(frames[0]);
-        let forward = thorax.rotation * Vector3::x();
-        let heading = forward.y.atan2(forward.x);
+        let across = frames[self.shoulders[0]].position - frames[self.shoulders[1]].position;
+        let middle =
+            0.5 * (frames[self.shoulders[0]].position + frames[self.shoulders[1]].position);
+        // The line points to the left.
+        let heading = (-across.x).atan2(across.y);
         let upright = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -heading);
         let place = |&e: &usize| {
-            let effector = &self.body.effectors()[e];
+            let effector = &motion.skeleton().effectors()[e];
             let point = frames[effector.joint].place(&effector.point);
-            let p = upright * (point - thorax.position);
+            let p = upright * (point - middle);
             [p.x, p.y, p.z]
         };
-        effectors.iter().flat_map(place).collect()
+        self.effectors.iter().flat_map(place).collect()
     }
 }
 

@@ -23,7 +23,7 @@ pub struct NearestDtwSettings {
     /// The band of Sakoe and Chiba (1978), a share of the frames; 0.1 is customary.
     pub band: f64,
     /// Temperature of the softmax that makes probabilities of distances, in usual distances of exemplars of one
-    /// primitive. A plain choice, not fitted.
+    /// primitive. A plain choice, not fitted to anybody.
     pub temperature: f64,
     /// The window by which a stream is judged, seconds.
     pub window_secs: f64,
@@ -41,7 +41,7 @@ impl Default for NearestDtwSettings {
             features: Features::Landmarks,
             samples: 64,
             band: 0.1,
-            temperature: 0.1,
+            temperature: 0.15,
             window_secs: 1.0,
             window_samples: 16,
             stride_secs: 0.1,

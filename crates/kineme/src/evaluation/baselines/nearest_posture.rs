@@ -4,6 +4,7 @@ use super::features::{Extractor, Features, LastSeen};
 use super::typical::{spread, typical_distance};
 use super::{Which, exemplars, least_of_each, positive, softmax, some_primitives, whole};
 use crate::error::Result;
+use crate::motion::Motion;
 use crate::primitive::{
     Listener, Observation, Observations, Posterior, Reading, Recogniser, Recognition, Vocabulary,
 };
@@ -17,9 +18,9 @@ pub struct NearestPostureSettings {
     /// What postures are compared by.
     pub features: Features,
     /// Temperature of the softmax that makes probabilities of distances, in usual distances of postures of one
-    /// primitive. A plain choice, not fitted.
+    /// primitive. A plain choice, not fitted to anybody.
     pub temperature: f64,
-    /// Postures a second that are taken from exemplars, at most their own rate.
+    /// Postures a second that are taken from exemplars and clips, at most their own rate.
     pub rate_hz: f64,
     /// How many postures are kept at most, but one an exemplar; where there are more, each exemplar gives fewer.
     pub most_postures: usize,
@@ -29,14 +30,15 @@ impl Default for NearestPostureSettings {
     fn default() -> Self {
         Self {
             features: Features::Landmarks,
-            temperature: 0.1,
+            temperature: 0.2,
             rate_hz: 15.0,
             most_postures: 5000,
         }
     }
 }
 
-/// Names the primitive whose exemplars hold the nearest posture; in a clip every frame votes, with its probabilities.
+/// Names the primitive whose exemplars hold the nearest posture; in a clip frames vote with their
+/// probabilities.
 ///
 /// Probabilities are the softmax of the distances of each primitive's nearest posture. Novelty is the least distance over
 /// the usual one: the median over postures of that to the nearest of another exemplar of the same primitive; of a clip,
@@ -45,6 +47,7 @@ impl Default for NearestPostureSettings {
 pub struct NearestPosture<'a> {
     vocabulary: &'a Vocabulary,
     temperature: f64,
+    rate_hz: f64,
     extractor: Extractor,
     of: Vec<Which>,
     /// Features, one posture after the other.
@@ -73,11 +76,8 @@ impl<'a> NearestPosture<'a> {
         let (mut of, mut postures) = (Vec::new(), Vec::new());
         for which in &all {
             let motion = motion(which);
-            // Whole frames: what lies between two was never seen.
-            let step = (motion.rate_hz() / rate_hz).max(1.0);
-            let frames = (0..).map(|k| (f64::from(k) * step).round() as usize);
             let mut poses = Vec::new();
-            for f in frames.take_while(|f| *f < motion.frames()) {
+            for f in picked(motion, rate_hz) {
                 poses.extend_from_slice(motion.pose(f));
                 of.push(*which);
             }
@@ -86,6 +86,7 @@ impl<'a> NearestPosture<'a> {
         let mut nearest = Self {
             vocabulary,
             temperature: settings.temperature,
+            rate_hz: settings.rate_hz,
             typical: 1.0,
             extractor,
             of,
@@ -145,7 +146,9 @@ impl Recogniser for NearestPosture<'_> {
     fn recognise(&self, seen: &Observations) -> Result<Recognition> {
         let features = self.extractor.of_seen(seen)?;
         let primitives = self.vocabulary.primitives();
-        let frames = seen.motion().frames() as f64;
+        let dims = self.extractor.dims();
+        let picked = picked(seen.motion(), self.rate_hz);
+        let frames = picked.len() as f64;
         let mut sums = vec![0.0; primitives.len()];
         let mut novelty = 0.0;
         // How often each exemplar was the nearest of its primitive.
@@ -153,8 +156,8 @@ impl Recogniser for NearestPosture<'_> {
             .iter()
             .map(|p| vec![0; p.exemplars().len()])
             .collect();
-        for posture in features.chunks_exact(self.extractor.dims()) {
-            let (reading, nearest) = self.read(posture);
+        for f in picked {
+            let (reading, nearest) = self.read(&features[f * dims..(f + 1) * dims]);
             for (sum, p) in sums.iter_mut().zip(&reading.posterior.primitives) {
                 *sum += p / frames;
             }
@@ -174,6 +177,13 @@ impl Recogniser for NearestPosture<'_> {
         let parameters = primitives[leading].point(exemplar.unwrap_or(0)).to_vec();
         Ok(whole(seen, posterior, parameters, novelty))
     }
+}
+
+/// Frames at a rate of at most `rate_hz`, from the first on. Whole ones: what lies between two was never seen.
+fn picked(motion: &Motion, rate_hz: f64) -> Vec<usize> {
+    let step = (motion.rate_hz() / rate_hz).max(1.0);
+    let frames = (0..motion.frames()).map(|k| (k as f64 * step).round() as usize);
+    frames.take_while(|f| *f < motion.frames()).collect()
 }
 
 /// Watches a stream.
