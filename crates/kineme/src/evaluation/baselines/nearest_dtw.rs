@@ -18,6 +18,9 @@ const COMPARED: usize = 100;
 pub struct NearestDtwSettings {
     /// What postures are compared by.
     pub features: Features,
+    /// The share of a movement's mean posture that is disregarded, 0 to 1: with more of it shapes are compared in place of
+    /// postures, which helps between people who stand differently. Customarily 0.
+    pub shape: f64,
     /// Frames to which whole movements are resampled, at least 2.
     pub samples: usize,
     /// The band of Sakoe and Chiba (1978), a share of the frames; 0.1 is customary.
@@ -39,6 +42,7 @@ impl Default for NearestDtwSettings {
     fn default() -> Self {
         Self {
             features: Features::Landmarks,
+            shape: 0.0,
             samples: 64,
             band: 0.1,
             temperature: 0.15,
@@ -85,8 +89,8 @@ impl<'a> NearestDtw<'a> {
     /// The exemplars of a vocabulary, ready to be compared with.
     ///
     /// # Errors
-    /// When the vocabulary has no primitives or its body lacks the features, when a length is below 2 frames, and when
-    /// another number is not above 0.
+    /// When the vocabulary has no primitives or its body lacks the features, when a length is below 2 frames, the
+    /// shape not from 0 to 1, another number not above 0.
     pub fn new(vocabulary: &'a Vocabulary, settings: &NearestDtwSettings) -> Result<Self> {
         some_primitives(vocabulary)?;
         positive(&[
@@ -99,6 +103,12 @@ impl<'a> NearestDtw<'a> {
             return Err(Error::invalid(format!(
                 "movements are compared by 2 frames or more, found {} and {}",
                 settings.samples, settings.window_samples
+            )));
+        }
+        if !(0.0..=1.0).contains(&settings.shape) {
+            return Err(Error::invalid(format!(
+                "the shape is a share from 0 to 1, found {}",
+                settings.shape
             )));
         }
         let extractor = Extractor::new(vocabulary.body(), &settings.features)?;
@@ -115,11 +125,13 @@ impl<'a> NearestDtw<'a> {
         for which in &all {
             let motion = motion(which);
             let features = extractor.of_poses(motion.poses().to_vec())?;
-            clips.extend(resample(&features, dims, &places(settings.samples)));
+            let clip = resample(&features, dims, &places(settings.samples));
+            clips.extend(shaped(clip, dims, settings.shape));
             let recent = Recent::new(settings.window_secs, settings.window_samples);
             let cut = windows(&features, dims, motion.rate_hz(), recent, stride);
             window_of.extend(std::iter::repeat_n(*which, cut.len()));
-            window_values.extend(cut.into_iter().flatten());
+            let shape = |window| shaped(window, dims, settings.shape);
+            window_values.extend(cut.into_iter().flat_map(shape));
         }
         let everyone: Vec<usize> = (0..all.len()).collect();
         let known = |of: Vec<Which>, values: &[f64], frames: usize, queries: &[usize]| {
@@ -200,8 +212,9 @@ impl Recogniser for NearestDtw<'_> {
 
     fn recognise(&self, seen: &Observations) -> Result<Recognition> {
         let features = self.extractor.of_seen(seen)?;
-        let places = places(self.settings.samples);
-        let query = resample(&features, self.extractor.dims(), &places);
+        let dims = self.extractor.dims();
+        let query = resample(&features, dims, &places(self.settings.samples));
+        let query = shaped(query, dims, self.settings.shape);
         let primitives = self.vocabulary.primitives();
         let found = self
             .clips
@@ -241,7 +254,8 @@ impl Listener for Ear<'_> {
             return Ok(reading.clone());
         }
         let primitives = vocabulary.primitives().len();
-        let found = windows.find(&self.recent.window(), primitives, settings.temperature)?;
+        let window = shaped(self.recent.window(), extractor.dims(), settings.shape);
+        let found = windows.find(&window, primitives, settings.temperature)?;
         let reading = Reading {
             posterior: found.posterior,
             place: None,
@@ -257,4 +271,16 @@ fn places(samples: usize) -> Vec<f64> {
     (0..samples)
         .map(|k| k as f64 / (samples - 1) as f64)
         .collect()
+}
+
+/// A movement less this share of its mean posture.
+fn shaped(mut frames: Vec<f64>, dims: usize, share: f64) -> Vec<f64> {
+    let count = (frames.len() / dims) as f64;
+    for d in 0..dims {
+        let mean = frames.iter().skip(d).step_by(dims).sum::<f64>() / count;
+        for v in frames.iter_mut().skip(d).step_by(dims) {
+            *v -= share * mean;
+        }
+    }
+    frames
 }
