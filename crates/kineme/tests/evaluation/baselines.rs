@@ -38,37 +38,40 @@ const CLASSES: [(&str, Role, bool, usize); 3] = [
     ("aside", Role::RightUpperArm, true, 3),
 ];
 
-fn primitive((name, arm, sideways, count): (&str, Role, bool, usize)) -> Primitive {
-    let exemplars = (0..count).map(|k| {
-        let motion = swing(
-            arm,
-            60.0 + 15.0 * k as f64,
-            sideways,
-            1.2 + 0.1 * k as f64,
-            60.0,
-        );
-        Exemplar {
-            provenance: Provenance {
-                motion: format!("{name}-{k}"),
-                start_secs: 0.0,
-                end_secs: motion.duration_secs(),
-                blake3: None,
-            },
-            motion,
-            adverbs: None,
-        }
-    });
+fn learned(name: &str, motions: impl Iterator<Item = Motion>) -> Primitive {
+    let exemplar = |(k, motion): (usize, Motion)| Exemplar {
+        provenance: Provenance {
+            motion: format!("{name}-{k}"),
+            start_secs: 0.0,
+            end_secs: motion.duration_secs(),
+            blake3: None,
+        },
+        motion,
+        adverbs: None,
+    };
     let modelling = Modelling {
         interpolation: Interpolation::Shepard,
         ..Modelling::default()
     };
-    Primitive::learn(name, exemplars.collect(), &modelling).expect("a primitive")
+    let exemplars = motions.enumerate().map(exemplar).collect();
+    Primitive::learn(name, exemplars, &modelling).expect("a primitive")
+}
+
+fn primitive((name, arm, sideways, count): (&str, Role, bool, usize)) -> Primitive {
+    let variation = |k: usize| {
+        let k = k as f64;
+        swing(arm, 60.0 + 15.0 * k, sideways, 1.2 + 0.1 * k, 60.0)
+    };
+    learned(name, (0..count).map(variation))
+}
+
+fn of_body(primitives: Vec<Primitive>) -> Vocabulary {
+    let transitions = Transitions::none(primitives.len());
+    Vocabulary::new(Arc::clone(&BODY), primitives, vec![], transitions).expect("a vocabulary")
 }
 
 fn vocabulary(order: [usize; 3]) -> Vocabulary {
-    let primitives = order.map(|i| primitive(CLASSES[i])).to_vec();
-    let transitions = Transitions::none(3);
-    Vocabulary::new(Arc::clone(&BODY), primitives, vec![], transitions).expect("a vocabulary")
+    of_body(order.map(|i| primitive(CLASSES[i])).to_vec())
 }
 
 static VOCABULARY: LazyLock<Vocabulary> = LazyLock::new(|| vocabulary([0, 1, 2]));
@@ -205,6 +208,37 @@ fn a_stream_is_recognised_while_it_moves() {
         let half = seen(motion.slice(0..motion.frames() / 2).expect("a half"));
         let early = readings(&*recogniser, &half).expect("readings");
         assert_eq!(early[..], told[..early.len()], "{name}");
+    }
+}
+
+#[test]
+fn a_window_tells_the_way_up_from_the_way_down() {
+    let half = |up: bool, height: f64| {
+        let motion = swing(Role::RightUpperArm, height, false, 2.0, 60.0);
+        let frames = if up { 0..61 } else { 60..121 };
+        motion.slice(frames).expect("a half")
+    };
+    let way = |name: &str, up: bool| learned(name, [60.0, 80.0].map(|h| half(up, h)).into_iter());
+    let vocabulary = of_body(vec![way("up", true), way("down", false)]);
+    let motion = seen(swing(Role::RightUpperArm, 70.0, false, 2.0, 60.0));
+    // However few windows it may keep, and however coarse they are.
+    for (most_windows, window_samples) in [(1000, 16), (8, 16), (1000, 8)] {
+        let settings = NearestDtwSettings {
+            most_windows,
+            window_samples,
+            window_secs: 0.5,
+            ..NearestDtwSettings::default()
+        };
+        let nearest = NearestDtw::new(&vocabulary, &settings).expect("dtw");
+        let told = readings(&nearest, &motion).expect("readings");
+        // The same postures on the way up and on the way down.
+        for (f, wanted) in [(30, 0), (45, 0), (90, 1), (105, 1)] {
+            let case = format!("{most_windows} windows of {window_samples}, frame {f}");
+            assert_eq!(told[f].posterior.best(), Some(wanted), "{case}");
+        }
+        // At 60 Hz, one answer in six is new.
+        let changes = told.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        assert!(changes <= 121 / 6, "{changes} answers");
     }
 }
 
