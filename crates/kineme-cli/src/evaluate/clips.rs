@@ -1,6 +1,6 @@
 //! The clips that are judged.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use kineme::primitive::Observations;
 use kineme::{Error, Primitive, Provenance, Vocabulary};
@@ -42,14 +42,14 @@ pub(super) fn clips(vocabulary: &Vocabulary, args: &EvaluateArgs) -> Result<Read
     }
     let mut read = manifest.examples(vocabulary.body(), &args.read)?;
     let exemplars = Exemplars::of(vocabulary);
-    let mut tested = BTreeSet::new();
+    let mut tested = Vec::new();
     let examples = std::mem::take(&mut read.items);
     let clips: Vec<Clip> = examples
         .into_iter()
         .map(|example| {
             let is_exemplar = exemplars.overlap(&example.exemplar.provenance);
             if is_exemplar {
-                tested.insert(example.place);
+                tested.push(example.place);
             }
             Clip {
                 truth: names.iter().position(|name| *name == example.label),
