@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::body_motion::Motion;
-use crate::skeleton::{Role, Skeleton};
+use crate::skeleton::{Role, Root, Skeleton};
 
 /// The joints whose positions are compared: trunk, head, and each limb from its root to its tip.
 const ROLES: [Role; 20] = [
@@ -29,8 +29,8 @@ const ROLES: [Role; 20] = [
     Role::Spine,
 ];
 
-/// The landmarks of a body: of each role that it has, the joint farthest from the root.
-fn landmarks_of(body: &Skeleton) -> Vec<(Role, usize)> {
+/// The landmarks of a body, in their order: of each role that it has, the joint farthest from the root.
+pub fn landmarks_of(body: &Skeleton) -> Vec<(Role, usize)> {
     ROLES
         .iter()
         .filter_map(|&r| Some((r, *body.joints_of(r).last()?)))
@@ -68,6 +68,18 @@ pub fn mirror_landmarks(body: &Skeleton, landmarks: &[f64]) -> Vec<f64> {
         }
     }
     mirrored
+}
+
+/// Positions (metres) of the compared joints at a pose against the root, heading removed: [`landmark_dims`] numbers.
+///
+/// # Panics
+/// When `pose` has not [`Skeleton::dof`] coordinates.
+pub fn landmarks_at(body: &Skeleton, pose: &[f64]) -> Vec<f64> {
+    let frames = body.frames(pose, &Root::ORIGIN);
+    let joints = landmarks_of(body).into_iter();
+    joints
+        .flat_map(|(_, j)| <[f64; 3]>::from(frames[j].position))
+        .collect()
 }
 
 impl Motion {

@@ -1,0 +1,199 @@
+//! How well a moment fits each moment of each row: Gaussian distances, whitened by how exemplars of one primitive differ.
+
+use std::ops::Range;
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
+use pulp::{Arch, Simd, WithSimd};
+
+use super::features::Feature;
+use crate::error::{Error, Result};
+
+/// One part of the features, hands or body: its own covariance, its own trust.
+#[derive(Debug, Clone)]
+pub(super) struct Part {
+    /// Which numbers of a feature.
+    pub range: Range<usize>,
+    /// How much a squared distance counts, a second: features of successive moments are far from independent, and
+    /// those of one moment too (the likelihood is tempered).
+    pub trust_per_sec: f64,
+    /// At most so many directions are kept, those in which the rows vary most once whitened.
+    pub directions: usize,
+    /// Covariance of an observation about the truth.
+    pub covariance: DMatrix<f64>,
+}
+
+/// The distances of moments to all rows' moments, when certain numbers are unknown.
+#[derive(Debug, Clone)]
+pub(super) struct Emission {
+    parts: Vec<Whitened>,
+    states: usize,
+    /// The unknown numbers that it is made for; empty: none.
+    pub unknown: Vec<bool>,
+}
+
+#[derive(Debug, Clone)]
+struct Whitened {
+    trust_per_sec: f64,
+    /// The numbers used.
+    known: Vec<usize>,
+    /// Directions x known: what makes residuals white.
+    transform: DMatrix<f64>,
+    /// Directions x states: the rows' moments, whitened; a direction's numbers lie together.
+    states: Vec<f64>,
+    /// A broad Gaussian over all moments of all rows: whitened mean, deviations in its own directions.
+    broad: Broad,
+}
+
+#[derive(Debug, Clone)]
+struct Broad {
+    mean: DVector<f64>,
+    factor: Cholesky<f64, Dyn>,
+    log_det: f64,
+}
+
+/// What is told of a moment: for each state, and for movement of no known kind.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Fit {
+    /// Logarithm of the tempered density a second, one a state, up to a constant that all share.
+    pub states: Vec<f64>,
+    /// The same under the broad Gaussian.
+    pub broad: f64,
+}
+
+impl Emission {
+    /// Whitens the rows' features (states x dims) in these parts, without the unknown numbers.
+    ///
+    /// # Errors
+    /// When a covariance is not positive definite.
+    pub fn new(parts: &[Part], features: &[f64], dims: usize, unknown: &[bool]) -> Result<Self> {
+        let hidden = |i: usize| unknown.get(i).copied().unwrap_or(false);
+        let mut whitened = Vec::new();
+        for part in parts {
+            let known: Vec<usize> = part.range.clone().filter(|&i| !hidden(i)).collect();
+            if !known.is_empty() {
+                whitened.push(Whitened::new(part, known, features, dims)?);
+            }
+        }
+        Ok(Self {
+            parts: whitened,
+            states: features.len() / dims,
+            unknown: unknown.to_vec(),
+        })
+    }
+
+    /// How well a feature fits.
+    pub fn fit(&self, feature: &Feature, fit: &mut Fit) {
+        fit.states.clear();
+        fit.states.resize(self.states, 0.0);
+        fit.broad = 0.0;
+        for part in &self.parts {
+            let known = DVector::from_iterator(
+                part.known.len(),
+                part.known.iter().map(|&i| feature.values[i]),
+            );
+            let z = &part.transform * known;
+            Arch::new().dispatch(Distances {
+                point: z.as_slice(),
+                states: &part.states,
+                factor: -0.5 * part.trust_per_sec,
+                sums: &mut fit.states,
+            });
+            let off = part.broad.factor.l().solve_lower_triangular(&(&z - &part.broad.mean));
+            let squared = off.map_or(0.0, |v| v.norm_squared());
+            fit.broad -= 0.5 * part.trust_per_sec * (squared + part.broad.log_det);
+        }
+    }
+}
+
+impl Whitened {
+    fn new(part: &Part, known: Vec<usize>, features: &[f64], dims: usize) -> Result<Self> {
+        let n = known.len();
+        let states = features.len() / dims;
+        let at = |i: usize| known[i] - part.range.start;
+        let covariance = DMatrix::from_fn(n, n, |i, j| part.covariance[(at(i), at(j))]);
+        let factor = Cholesky::new(covariance)
+            .ok_or_else(|| Error::invalid("the exemplars differ in no direction: no covariance"))?;
+        let raw = DMatrix::from_fn(n, states, |i, s| features[s * dims + known[i]]);
+        let white = factor
+            .l()
+            .solve_lower_triangular(&raw)
+            .ok_or_else(|| Error::invalid("a covariance that cannot be inverted"))?;
+        let mean = white.column_mean();
+        let mut centred = white;
+        for mut column in centred.column_iter_mut() {
+            column -= &mean;
+        }
+        let spread = &centred * centred.transpose() / states as f64;
+        let eigen = SymmetricEigen::new(spread);
+        let mut order: Vec<usize> = (0..n).collect();
+        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        order.truncate(part.directions.max(1));
+        let rows: Vec<_> = order.iter().map(|&k| eigen.eigenvectors.column(k).transpose()).collect();
+        let basis = DMatrix::from_rows(&rows);
+        let inverse = factor
+            .l()
+            .solve_lower_triangular(&DMatrix::identity(n, n))
+            .ok_or_else(|| Error::invalid("a covariance that cannot be inverted"))?;
+        let mean = &basis * mean;
+        let mut reduced = &basis * centred;
+        for mut column in reduced.column_iter_mut() {
+            column += &mean;
+        }
+        // In these directions the rows vary independently; an observation is as white as ever about them.
+        let broad = DMatrix::from_diagonal(&DVector::from_iterator(
+            order.len(),
+            order.iter().map(|&k| eigen.eigenvalues[k].max(0.0) + 1.0),
+        ));
+        let broad = Cholesky::new(broad)
+            .ok_or_else(|| Error::invalid("rows that are not finite"))?;
+        Ok(Self {
+            trust_per_sec: part.trust_per_sec,
+            known,
+            transform: basis * inverse,
+            states: reduced.transpose().as_slice().to_vec(),
+            broad: Broad {
+                log_det: broad.ln_determinant(),
+                factor: broad,
+                mean,
+            },
+        })
+    }
+}
+
+/// Adds to each sum the squared distance of a point to a state, times a factor.
+struct Distances<'a> {
+    point: &'a [f64],
+    /// Directions x states.
+    states: &'a [f64],
+    factor: f64,
+    sums: &'a mut [f64],
+}
+
+/// States whose sums are kept at hand while the directions are gone through.
+const BLOCK: usize = 256;
+
+impl WithSimd for Distances<'_> {
+    type Output = ();
+
+    // Inlined into a function compiled for the machine's vector instructions; the inner loop vectorises there, each
+    // state's sum in the order of the directions whatever the width.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let n = self.sums.len();
+        let mut squared = [0.0; BLOCK];
+        for first in (0..n).step_by(BLOCK) {
+            let count = BLOCK.min(n - first);
+            let block = &mut squared[..count];
+            block.fill(0.0);
+            for (x, states) in self.point.iter().zip(self.states.chunks_exact(n)) {
+                for (sum, y) in block.iter_mut().zip(&states[first..first + count]) {
+                    let d = x - y;
+                    *sum += d * d;
+                }
+            }
+            for (sum, d) in self.sums[first..first + count].iter_mut().zip(block) {
+                *sum += self.factor * *d;
+            }
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! How an observation differs from the row that it follows: estimated from how rows of one primitive differ.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::rows::Row;
+use crate::primitive::{ParameterSource, Vocabulary};
+
+/// Standard deviation expected before any exemplar was seen, metres: what people and retargeting are good for.
+const PRIOR_M: f64 = 0.04;
+/// As many residuals of that size are taken for granted.
+const PRIOR_COUNT: f64 = 200.0;
+/// The share of the covariance that is replaced by its diagonal: features are more than exemplars determine.
+const SHRINK: f64 = 0.1;
+/// Phase within which the most alike moment is looked for.
+const NEAR: f64 = 0.15;
+/// At most so many pairs of rows a primitive.
+const MOST_PAIRS: usize = 200;
+
+/// The covariance of features about their row.
+///
+/// Residuals are differences of two rows of one primitive at the same phase. Where exemplars are given by many people,
+/// or by one on several days, the more distant half of the pairs counts: a new person will be as far. Where a grid of
+/// parameters is known, neighbours on it count: between them lies everything that the primitive can be.
+pub(super) fn covariance(vocabulary: &Vocabulary, rows: &[Row], features: &[f64], dims: usize) -> DMatrix<f64> {
+    let mut sum = DMatrix::<f64>::identity(dims, dims) * (PRIOR_M * PRIOR_M * PRIOR_COUNT);
+    let mut count = PRIOR_COUNT;
+    let mut starts = Vec::with_capacity(rows.len());
+    let mut first = 0;
+    for row in rows {
+        starts.push(first);
+        first += row.phases.len();
+    }
+    for primitive in 0..vocabulary.primitives().len() {
+        let members: Vec<usize> = (0..rows.len())
+            .filter(|&r| rows[r].primitive == primitive)
+            .collect();
+        let source = vocabulary.primitives()[primitive].parameters().source();
+        let principal = matches!(source, ParameterSource::Principal { .. });
+        let pairs = match principal || members.iter().all(|&r| rows[r].parameters.is_empty()) {
+            true => all_pairs(&members),
+            false => neighbours(rows, &members),
+        };
+        let mut residuals: Vec<(f64, DMatrix<f64>)> = pairs
+            .into_iter()
+            .map(|(a, b)| {
+                let r = residual((&rows[a], starts[a]), (&rows[b], starts[b]), features, dims);
+                (r.norm_squared() / r.ncols() as f64, r)
+            })
+            .collect();
+        if principal && residuals.len() > 1 {
+            residuals.sort_by(|a, b| a.0.total_cmp(&b.0));
+            residuals.drain(..residuals.len() / 2);
+        }
+        for (_, r) in residuals {
+            // Two rows differ by twice what one differs from the truth.
+            sum += &r * r.transpose() * 0.5;
+            count += r.ncols() as f64;
+        }
+    }
+    let covariance = sum / count;
+    let diagonal = DMatrix::from_diagonal(&covariance.diagonal());
+    let fl: f64 = std::env::var("FLOOR").map_or(0.0, |v| v.parse().unwrap());
+    covariance * (1.0 - SHRINK) + diagonal * SHRINK + DMatrix::identity(dims, dims) * (fl * fl)
+}
+
+/// Pairs of rows, evenly taken where they are many.
+fn all_pairs(members: &[usize]) -> Vec<(usize, usize)> {
+    let n = members.len();
+    let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
+    let step = (n * n.saturating_sub(1) / 2).div_ceil(MOST_PAIRS).max(1);
+    let pairs = pairs.step_by(step);
+    pairs.map(|(i, j)| (members[i], members[j])).collect()
+}
+
+/// Each row with the one nearest in parameters.
+fn neighbours(rows: &[Row], members: &[usize]) -> Vec<(usize, usize)> {
+    let squared = |a: usize, b: usize| -> f64 {
+        let pairs = rows[a].parameters.iter().zip(&rows[b].parameters);
+        pairs.map(|(x, y)| (x - y) * (x - y)).sum()
+    };
+    let nearest = |&a: &usize| {
+        let others = members.iter().copied().filter(|&b| b != a);
+        let nearest = others.min_by(|&b, &c| squared(a, b).total_cmp(&squared(a, c)))?;
+        Some((a, nearest))
+    };
+    members.iter().filter_map(nearest).take(MOST_PAIRS).collect()
+}
+
+/// Features of a row less those of another where it is most alike, near the same phase: dims x moments. What is left of
+/// differences of timing would hide the movement itself, as they lie along it.
+fn residual(a: (&Row, usize), b: (&Row, usize), features: &[f64], dims: usize) -> DMatrix<f64> {
+    let at = |start: usize, k: usize| &features[(start + k) * dims..(start + k + 1) * dims];
+    let squared = |x: &[f64], y: &[f64]| -> f64 { x.iter().zip(y).map(|(x, y)| (x - y) * (x - y)).sum() };
+    let column = |k: usize| {
+        let own = at(a.1, k);
+        let apart = |j: usize| {
+            let d = (b.0.progress[j] - a.0.progress[k]).abs();
+            if b.0.cyclic { d.min(1.0 - d) } else { d }
+        };
+        let near = |j: &usize| apart(*j) <= NEAR;
+        let best = (0..b.0.phases.len()).filter(near).min_by(|&i, &j| {
+            squared(own, at(b.1, i)).total_cmp(&squared(own, at(b.1, j)))
+        });
+        let other = at(b.1, best.unwrap_or(0));
+        DVector::from_iterator(dims, own.iter().zip(other).map(|(x, y)| x - y))
+    };
+    let columns: Vec<DVector<f64>> = (0..a.0.phases.len()).map(column).collect();
+    DMatrix::from_columns(&columns)
+}
