@@ -11,6 +11,6 @@ mod track;
 
 pub use activity::{CENTROID_DIMS, STACKED_DIMS};
 pub use body_motion::Motion;
-pub use landmarks::{landmarks_at, landmarks_of, landmark_dims, mirror_landmarks};
+pub use landmarks::{landmark_dims, landmarks_at, landmarks_of, mirror_landmarks};
 pub use recording::{Format, Observed, Placement, RecordedJoint, Recording, Source};
 pub use track::Track;

@@ -21,7 +21,12 @@ const MOST_PAIRS: usize = 200;
 /// Residuals are differences of two rows of one primitive at the same phase. Where exemplars are given by many people,
 /// or by one on several days, the more distant half of the pairs counts: a new person will be as far. Where a grid of
 /// parameters is known, neighbours on it count: between them lies everything that the primitive can be.
-pub(super) fn covariance(vocabulary: &Vocabulary, rows: &[Row], features: &[f64], dims: usize) -> DMatrix<f64> {
+pub(super) fn covariance(
+    vocabulary: &Vocabulary,
+    rows: &[Row],
+    features: &[f64],
+    dims: usize,
+) -> DMatrix<f64> {
     let mut sum = DMatrix::<f64>::identity(dims, dims) * (PRIOR_M * PRIOR_M * PRIOR_COUNT);
     let mut count = PRIOR_COUNT;
     let mut starts = Vec::with_capacity(rows.len());
@@ -83,14 +88,19 @@ fn neighbours(rows: &[Row], members: &[usize]) -> Vec<(usize, usize)> {
         let nearest = others.min_by(|&b, &c| squared(a, b).total_cmp(&squared(a, c)))?;
         Some((a, nearest))
     };
-    members.iter().filter_map(nearest).take(MOST_PAIRS).collect()
+    members
+        .iter()
+        .filter_map(nearest)
+        .take(MOST_PAIRS)
+        .collect()
 }
 
 /// Features of a row less those of another where it is most alike, near the same phase: dims x moments. What is left of
 /// differences of timing would hide the movement itself, as they lie along it.
 fn residual(a: (&Row, usize), b: (&Row, usize), features: &[f64], dims: usize) -> DMatrix<f64> {
     let at = |start: usize, k: usize| &features[(start + k) * dims..(start + k + 1) * dims];
-    let squared = |x: &[f64], y: &[f64]| -> f64 { x.iter().zip(y).map(|(x, y)| (x - y) * (x - y)).sum() };
+    let squared =
+        |x: &[f64], y: &[f64]| -> f64 { x.iter().zip(y).map(|(x, y)| (x - y) * (x - y)).sum() };
     let column = |k: usize| {
         let own = at(a.1, k);
         let apart = |j: usize| {
@@ -98,9 +108,9 @@ fn residual(a: (&Row, usize), b: (&Row, usize), features: &[f64], dims: usize) -
             if b.0.cyclic { d.min(1.0 - d) } else { d }
         };
         let near = |j: &usize| apart(*j) <= NEAR;
-        let best = (0..b.0.phases.len()).filter(near).min_by(|&i, &j| {
-            squared(own, at(b.1, i)).total_cmp(&squared(own, at(b.1, j)))
-        });
+        let best = (0..b.0.phases.len())
+            .filter(near)
+            .min_by(|&i, &j| squared(own, at(b.1, i)).total_cmp(&squared(own, at(b.1, j))));
         let other = at(b.1, best.unwrap_or(0));
         DVector::from_iterator(dims, own.iter().zip(other).map(|(x, y)| x - y))
     };

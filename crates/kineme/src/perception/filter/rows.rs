@@ -96,7 +96,11 @@ impl Clock {
             true => secs.rem_euclid(whole),
             false => secs.clamp(0.0, whole),
         };
-        let k = self.secs.partition_point(|&s| s <= secs).clamp(1, PACE_STEPS) - 1;
+        let k = self
+            .secs
+            .partition_point(|&s| s <= secs)
+            .clamp(1, PACE_STEPS)
+            - 1;
         let share = (secs - self.secs[k]) / (self.secs[k + 1] - self.secs[k]);
         ((k as f64 + share) / PACE_STEPS as f64).clamp(0.0, 1.0)
     }
@@ -125,7 +129,13 @@ fn rows_of(index: usize, primitive: &Primitive, most: usize) -> Result<Vec<Row>>
         .map(|k| k * n / taken)
         .map(|i| {
             let path = Path::Exemplar(primitive, i);
-            row(index, primitive, Some(i), primitive.point(i).to_vec(), &path)
+            row(
+                index,
+                primitive,
+                Some(i),
+                primitive.point(i).to_vec(),
+                &path,
+            )
         })
         .collect();
     // What a recording does beside its cycle (a turn on the way) would else be forgotten.
@@ -187,7 +197,11 @@ fn row(
     let moments = ((whole * RATE_HZ).round() as usize).clamp(FEWEST, MOST);
     // The last moment of a cycle is the first of the next.
     let step_secs = whole / (moments - usize::from(!cyclic)) as f64;
-    let still = if cyclic { 0 } else { (STILL_SECS / step_secs).ceil() as usize };
+    let still = if cyclic {
+        0
+    } else {
+        (STILL_SECS / step_secs).ceil() as usize
+    };
     let still_secs = still as f64 * step_secs;
     let phases: Vec<f64> = (0..moments + 2 * still)
         .map(|k| clock.phase(k as f64 * step_secs - still_secs))

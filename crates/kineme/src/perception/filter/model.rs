@@ -7,8 +7,8 @@ use rayon::prelude::*;
 
 use super::emission::{Emission, Part};
 use super::features::{Feature, Layout, Moment, Recent, offset};
-use super::filter::FilterSettings;
 use super::noise::covariance;
+use super::recogniser::FilterSettings;
 use super::rows::{Row, rows};
 use crate::error::Result;
 use crate::primitive::Vocabulary;

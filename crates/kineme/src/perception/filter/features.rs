@@ -176,7 +176,9 @@ impl Layout {
             }
         };
         let offset = offset.then(|| {
-            let first: Vec<Moment> = (0..4).map(|k| moment(OFFSET_SECS * f64::from(k) / 3.0)).collect();
+            let first: Vec<Moment> = (0..4)
+                .map(|k| moment(OFFSET_SECS * f64::from(k) / 3.0))
+                .collect();
             mean_posture(first.iter())
         });
         let mut values = Vec::with_capacity(row.phases.len() * self.dims());
@@ -255,7 +257,11 @@ impl Recent {
     pub fn then(&self) -> Option<Moment> {
         let (now, oldest) = (self.moments.back()?, self.moments.front()?);
         let secs = now.secs - WINDOW_SECS;
-        let Some(next) = self.moments.get(1).filter(|n| oldest.secs < secs && n.secs > secs) else {
+        let Some(next) = self
+            .moments
+            .get(1)
+            .filter(|n| oldest.secs < secs && n.secs > secs)
+        else {
             return Some(oldest.clone());
         };
         let s = (secs - oldest.secs) / (next.secs - oldest.secs);

@@ -89,11 +89,19 @@ pub(super) fn evidence<'a>(
         let n = row.phases.len();
         if !row.cyclic {
             let own = mass[first..first + n].iter().zip(&row.progress);
-            *log += own.map(|(m, p)| m * ((p - 1.0) / ENDS).exp()).sum::<f64>().max(1e-300).ln();
+            *log += own
+                .map(|(m, p)| m * ((p - 1.0) / ENDS).exp())
+                .sum::<f64>()
+                .max(1e-300)
+                .ln();
         }
         first += n;
     }
-    Evidence { rows: logs, broad, secs }
+    Evidence {
+        rows: logs,
+        broad,
+        secs,
+    }
 }
 
 /// Where a row begins: near phase 0; a cycle anywhere.

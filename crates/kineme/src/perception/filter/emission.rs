@@ -98,7 +98,11 @@ impl Emission {
                 factor: -0.5 * part.trust_per_sec,
                 sums: &mut fit.states,
             });
-            let off = part.broad.factor.l().solve_lower_triangular(&(&z - &part.broad.mean));
+            let off = part
+                .broad
+                .factor
+                .l()
+                .solve_lower_triangular(&(&z - &part.broad.mean));
             let squared = off.map_or(0.0, |v| v.norm_squared());
             fit.broad -= 0.5 * part.trust_per_sec * (squared + part.broad.log_det);
         }
@@ -128,7 +132,10 @@ impl Whitened {
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
         order.truncate(part.directions.max(1));
-        let rows: Vec<_> = order.iter().map(|&k| eigen.eigenvectors.column(k).transpose()).collect();
+        let rows: Vec<_> = order
+            .iter()
+            .map(|&k| eigen.eigenvectors.column(k).transpose())
+            .collect();
         let basis = DMatrix::from_rows(&rows);
         let inverse = factor
             .l()
@@ -144,8 +151,8 @@ impl Whitened {
             order.len(),
             order.iter().map(|&k| eigen.eigenvalues[k].max(0.0) + 1.0),
         ));
-        let broad = Cholesky::new(broad)
-            .ok_or_else(|| Error::invalid("rows that are not finite"))?;
+        let broad =
+            Cholesky::new(broad).ok_or_else(|| Error::invalid("rows that are not finite"))?;
         Ok(Self {
             trust_per_sec: part.trust_per_sec,
             known,
