@@ -1,1 +1,10 @@
 //! Floor 5: recognising movement with the same vocabulary that makes it (paper, section V).
+
+mod frame;
+mod paper;
+mod parts;
+mod rows;
+mod spans;
+
+pub use frame::{Frame, FrameSettings};
+pub use paper::{Paper, PaperSettings};

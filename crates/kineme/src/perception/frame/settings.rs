@@ -1,0 +1,103 @@
+//! [`FrameSettings`]: how the exact frame classifier sees.
+
+use crate::error::{Error, Result};
+use crate::perception::rows::MOST_DIMS;
+
+/// How [`super::Frame`] sees.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameSettings {
+    /// Postures that are judged together, 1 to 64.
+    pub n: usize,
+    /// Frames from one of them to the next, at least 1. Consecutive frames lie within one tolerance of each other and
+    /// say little about direction; 4 or more at 60 Hz do.
+    pub stride: usize,
+    /// A coordinate counts as equal within this, radians.
+    pub delta_rad: f64,
+    /// The mean leave-one-out error of the vocabulary widens it by so many times as much.
+    pub residual: f64,
+    /// The same for coordinates that no primitive moves, radians.
+    pub constant_rad: f64,
+    /// How far readings may pass the joint limits, radians: widens the range of the uniform background.
+    pub limits_rad: f64,
+    /// Parts of the body that may be at fault unannounced in a posture, 0 to 8: a broken sensor.
+    pub faults: usize,
+    /// How often a part is at fault, above 0 and below 1.
+    pub fault_rate: f64,
+    /// Patches along each parameter of primitives with one, two and three parameters, 1 to 128, 32 and 12.
+    pub patches: [usize; MOST_DIMS],
+    /// Pieces of phase, 4 to 512.
+    pub pieces: usize,
+    /// How probable rest is beforehand, as a multiple of one primitive.
+    pub prior_rest: f64,
+    /// The same of a movement that is none of the primitives.
+    pub prior_none: f64,
+    /// Spans of a recognised motion last at least so long, seconds.
+    pub dwell_secs: f64,
+}
+
+impl Default for FrameSettings {
+    fn default() -> Self {
+        Self {
+            n: 2,
+            stride: 4,
+            delta_rad: 0.08,
+            residual: 2.0,
+            constant_rad: 0.35,
+            limits_rad: 0.2,
+            faults: 1,
+            fault_rate: 0.02,
+            patches: [32, 10, 5],
+            pieces: 64,
+            prior_rest: 1.0,
+            prior_none: 1.0,
+            dwell_secs: 0.2,
+        }
+    }
+}
+
+impl FrameSettings {
+    pub(super) fn check(&self) -> Result<()> {
+        let [one, two, three] = self.patches;
+        for (name, value, least, most) in [
+            ("n", self.n, 1, 64),
+            ("stride", self.stride, 1, 10_000),
+            ("faults", self.faults, 0, 8),
+            ("patches of one parameter", one, 1, 128),
+            ("patches of two parameters", two, 1, 32),
+            ("patches of three parameters", three, 1, 12),
+            ("pieces", self.pieces, 4, 512),
+        ] {
+            if !(least..=most).contains(&value) {
+                return Err(Error::invalid(format!(
+                    "{name} must lie in {least} to {most}, found {value}"
+                )));
+            }
+        }
+        for (name, value, least) in [
+            ("delta_rad", self.delta_rad, f64::MIN_POSITIVE),
+            ("constant_rad", self.constant_rad, f64::MIN_POSITIVE),
+            ("residual", self.residual, 0.0),
+            ("limits_rad", self.limits_rad, 0.0),
+            ("prior_rest", self.prior_rest, 0.0),
+            ("prior_none", self.prior_none, f64::MIN_POSITIVE),
+            ("dwell_secs", self.dwell_secs, 0.0),
+        ] {
+            if !(value.is_finite() && value >= least) {
+                return Err(Error::invalid(format!(
+                    "{name} must be {}, found {value}",
+                    match least > 0.0 {
+                        true => "positive",
+                        false => "0 or more",
+                    }
+                )));
+            }
+        }
+        if !(self.fault_rate > 0.0 && self.fault_rate < 1.0) {
+            return Err(Error::invalid(format!(
+                "fault_rate must lie between 0 and 1, found {}",
+                self.fault_rate
+            )));
+        }
+        Ok(())
+    }
+}
