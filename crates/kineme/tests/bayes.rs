@@ -52,20 +52,35 @@ static VOCABULARY: LazyLock<Vocabulary> = LazyLock::new(|| {
         let [start, end] = ends(1.0);
         let out = [60.0 + 50.0 * a, 5.0 + 30.0 * b, 0.0];
         let low = [30.0, 30.0 + 20.0 * b, 10.0];
-        vec![start, key(0.4, out, 20.0, 25.0), key(0.7, low, 40.0, 20.0), end]
+        vec![
+            start,
+            key(0.4, out, 20.0, 25.0),
+            key(0.7, low, 40.0, 20.0),
+            end,
+        ]
     });
     let cross = primitive("cross", true, |a, b| {
         let [start, end] = ends(1.2);
         let out = [70.0 + 40.0 * a, -25.0 - 15.0 * b, 20.0];
         let high = [110.0 + 20.0 * a, -5.0, 30.0];
-        vec![start, key(0.5, out, 50.0, -30.0), key(0.9, high, 90.0, -20.0), end]
+        vec![
+            start,
+            key(0.5, out, 50.0, -30.0),
+            key(0.9, high, 90.0, -20.0),
+            end,
+        ]
     });
     // Nobody says what its parameters are.
     let raise = primitive("raise", false, |a, b| {
         let [start, end] = ends(1.1);
         let side = [50.0 * a, 60.0 + 30.0 * b, 0.0];
         let back = [-10.0 - 20.0 * a, 40.0 + 10.0 * b, -20.0];
-        vec![start, key(0.4, side, 70.0, 5.0), key(0.7, back, 30.0, 0.0), end]
+        vec![
+            start,
+            key(0.4, side, 70.0, 5.0),
+            key(0.7, back, 30.0, 0.0),
+            end,
+        ]
     });
     vocabulary(vec![reach, cross, raise])
 });
@@ -185,7 +200,10 @@ fn a_posterior_is_a_distribution() {
         assert!(all.iter().all(|x| (0.0..=1.0).contains(x)), "{p:?}");
         assert!((all.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{p:?}");
         let p = ask(&*PAPER, &pose, &missing);
-        assert!(p.primitives.iter().all(|x| (0.0..=1.0).contains(x)), "{p:?}");
+        assert!(
+            p.primitives.iter().all(|x| (0.0..=1.0).contains(x)),
+            "{p:?}"
+        );
     }
     // Of a posture of which nothing is known, nothing is said beyond what was probable before.
     let p = ask(&*FRAME, &vec![0.0; BODY.dof()], &vec![true; joints]);
@@ -305,11 +323,20 @@ fn a_missing_joint_is_its_marginal() {
     let elbow = BODY.joints_of(Role::RightLowerArm)[0];
     let at = BODY.coordinates(elbow).start;
     let limits = BODY.limits(elbow)[0];
-    let (low, high) = (limits.low - settings.limits_rad, limits.high + settings.limits_rad);
+    let (low, high) = (
+        limits.low - settings.limits_rad,
+        limits.high + settings.limits_rad,
+    );
     let mut missing = vec![false; BODY.joints().len()];
     missing[elbow] = true;
     // Densities over that of the background.
-    let odds = |p: &Posterior| p.primitives.iter().chain([&p.rest]).map(|x| x / p.none).collect::<Vec<_>>();
+    let odds = |p: &Posterior| {
+        p.primitives
+            .iter()
+            .chain([&p.rest])
+            .map(|x| x / p.none)
+            .collect::<Vec<_>>()
+    };
     for (k, phase) in [(0, 0.3), (0, 0.8), (1, 0.5)] {
         let primitive = &first.primitives()[k];
         let mut pose = primitive.pose(&[0.4, 0.7], phase).expect("a posture");
@@ -374,16 +401,19 @@ fn what_the_exact_model_can_produce_the_paper_accepts() {
 
 #[test]
 fn played_backward_a_movement_is_refused_where_frames_are_far_apart() {
+    const TUBE_RAD: f64 = 0.25;
     let mut rng = Pcg64::seed_from_u64(6);
-    for stride in [4, 6] {
+    for stride in [4, 8] {
         let settings = FrameSettings {
             n: 2,
             stride,
+            patches: [32, 12, 8],
+            pieces: 64,
             ..frame_settings()
         };
         let frame = Frame::new(&VOCABULARY, &settings).expect("a recogniser");
         let (mut frames, mut forward, mut backward) = (0, 0, 0);
-        for _ in 0..12 {
+        for _ in 0..16 {
             let k = rng.random_range(0..3);
             let primitive = &VOCABULARY.primitives()[k];
             let (seen, _) = performed(primitive, &random_place(primitive, &mut rng));
@@ -396,8 +426,12 @@ fn played_backward_a_movement_is_refused_where_frames_are_far_apart() {
             };
             let (there, back) = (answers(&seen), answers(&reversed));
             for f in stride..=last {
+                // Away from rest, and farther apart than the tube of tolerance and cell is wide.
                 let away = |m: &Motion| {
-                    from_guard(m.pose(f)).min(from_guard(m.pose(f - stride))) > 10_f64.to_radians()
+                    let (a, b) = (m.pose(f - stride), m.pose(f));
+                    let gaps = a.iter().zip(b).map(|(x, y)| (x - y).abs());
+                    let apart = gaps.fold(0.0, f64::max);
+                    from_guard(a).min(from_guard(b)) > 10_f64.to_radians() && apart > TUBE_RAD
                 };
                 if away(&seen) && away(&reversed) {
                     frames += 1;
@@ -406,9 +440,12 @@ fn played_backward_a_movement_is_refused_where_frames_are_far_apart() {
                 }
             }
         }
-        assert!(frames > 200, "{frames}");
+        assert!(frames > 80, "{frames}");
         assert_eq!(forward, frames, "stride {stride}");
-        assert!(10 * backward <= frames, "stride {stride}: {backward} of {frames}");
+        assert!(
+            10 * backward <= frames,
+            "stride {stride}: {backward} of {frames}"
+        );
     }
 }
 
@@ -416,7 +453,7 @@ fn played_backward_a_movement_is_refused_where_frames_are_far_apart() {
 fn hybrids_pass_the_paper_and_not_the_exact_model() {
     let mut rng = Pcg64::seed_from_u64(7);
     let (mut paper, mut exact, mut all) = (0, 0, 0);
-    for _ in 0..200 {
+    for _ in 0..600 {
         let k = rng.random_range(0..2);
         let primitive = &VOCABULARY.primitives()[k];
         let phase = rng.random_range(0.3..0.8);
@@ -431,7 +468,8 @@ fn hybrids_pass_the_paper_and_not_the_exact_model() {
             let gaps = pose.iter().zip(&hybrid).map(|(a, b)| (a - b).abs());
             gaps.fold(0.0, f64::max)
         };
-        let places = (0..21).flat_map(|i| (0..21).map(move |j| [i, j].map(|x| f64::from(x) / 20.0)));
+        let places =
+            (0..21).flat_map(|i| (0..21).map(move |j| [i, j].map(|x| f64::from(x) / 20.0)));
         // Those that happen to be near a true posture are no hybrids.
         if places.map(|p| distance(&p)).fold(f64::INFINITY, f64::min) < 0.25 {
             continue;
@@ -442,14 +480,22 @@ fn hybrids_pass_the_paper_and_not_the_exact_model() {
     }
     assert!(all >= 20, "{all}");
     assert_eq!(paper, all);
-    assert!(20 * exact <= all, "{exact} of {all}");
+    assert!(10 * exact <= all, "{exact} of {all}");
 }
 
 #[test]
 fn one_lost_joint_collapses_the_paper_only() {
-    let wrist = BODY.coordinates(BODY.joints_of(Role::RightLowerArm)[0]).start;
+    let elbow = BODY.joints_of(Role::RightLowerArm)[0];
+    let at = BODY.coordinates(elbow).start;
+    let forgiving = FrameSettings {
+        faults: 1,
+        ..frame_settings()
+    };
+    let forgiving = Frame::new(&VOCABULARY, &forgiving).expect("a recogniser");
+    let mut missing = vec![false; BODY.joints().len()];
+    missing[elbow] = true;
     let mut rng = Pcg64::seed_from_u64(8);
-    let (mut away, mut right, mut paper) = (0, 0, 0);
+    let (mut away, mut right, mut announced, mut paper) = (0, 0, 0, 0);
     for k in 0..3 {
         let primitive = &VOCABULARY.primitives()[k];
         let (seen, _) = performed(primitive, &random_place(primitive, &mut rng));
@@ -457,24 +503,27 @@ fn one_lost_joint_collapses_the_paper_only() {
             if from_guard(seen.pose(f)) < 10_f64.to_radians() {
                 continue;
             }
-            // The sensor sticks at the end of its range.
+            // The sensor sticks near the end of its range.
             let mut pose = seen.pose(f).to_vec();
-            pose[wrist] = 2.5;
+            pose[at] = 2.5;
             away += 1;
-            right += usize::from(ask(&*FRAME, &pose, &[]).best() == Some(k));
+            right += usize::from(ask(&forgiving, &pose, &[]).best() == Some(k));
+            announced += usize::from(ask(&*FRAME, &pose, &missing).best() == Some(k));
             paper += usize::from(ask(&*PAPER, &pose, &[]).best().is_some());
         }
     }
     assert!(away > 60, "{away}");
-    assert!(10 * right >= 9 * away, "{right} of {away}");
+    assert!(20 * right >= 19 * away, "{right} of {away}");
+    assert!(20 * announced >= 19 * away, "{announced} of {away}");
     assert_eq!(paper, 0, "of {away}");
 }
 
 #[test]
 fn what_a_primitive_makes_is_told_with_phase_and_parameters() {
     let mut rng = Pcg64::seed_from_u64(9);
-    let recognisers: [(&dyn Recogniser, f64, f64); 2] = [(&*FRAME, 0.08, 0.35), (&*PAPER, 0.1, 0.5)];
-    for (recogniser, phase_to, parameters_to) in recognisers {
+    let recognisers: [(&dyn Recogniser, f64); 2] = [(&*FRAME, 0.08), (&*PAPER, 0.1)];
+    for (recogniser, phase_to) in recognisers {
+        let (mut error, mut places) = (0.0, 0.0);
         for _ in 0..8 {
             let k = rng.random_range(0..3);
             let primitive = &VOCABULARY.primitives()[k];
@@ -493,11 +542,16 @@ fn what_a_primitive_makes_is_told_with_phase_and_parameters() {
                 let off = (place.phase - phases[f]).abs();
                 assert!(off < phase_to, "{k} {}: {place:?}", phases[f]);
                 assert!(off < 4.0 * place.phase_deviation, "{place:?} {}", phases[f]);
-                for (a, b) in place.parameters.iter().zip(&p) {
-                    assert!((a - b).abs() < parameters_to, "{p:?} {place:?}");
+                let deviations = place.parameters_deviation.iter();
+                for ((a, b), d) in place.parameters.iter().zip(&p).zip(deviations) {
+                    let off = (a - b).abs();
+                    assert!(off < 4.0 * d + 0.05, "{p:?} {place:?}");
+                    error += off;
+                    places += 1.0;
                 }
             }
         }
+        assert!(places > 200.0 && error < 0.15 * places, "{error} {places}");
     }
 }
 
@@ -545,7 +599,12 @@ fn a_motion_is_told_apart_into_what_was_done_when() {
         at.next_back().expect("no gap").primitive
     };
     let right = (0..truth.len()).filter(|&f| label(f) == truth[f]).count();
-    assert!(10 * right >= 9 * truth.len(), "{right} of {}: {:?}", truth.len(), told.spans);
+    assert!(
+        10 * right >= 9 * truth.len(),
+        "{right} of {}: {:?}",
+        truth.len(),
+        told.spans
+    );
     let done: Vec<usize> = told.spans.iter().filter_map(|s| s.primitive).collect();
     assert_eq!(done, [0, 2, 1]);
     let short = FrameSettings {
@@ -588,10 +647,15 @@ fn priors_scale_odds() {
     for _ in 0..50 {
         let p = &VOCABULARY.primitives()[0];
         let phase = rng.random_range(0.0..0.1);
-        let pose = p.pose(&random_place(p, &mut rng), phase).expect("a posture");
+        let pose = p
+            .pose(&random_place(p, &mut rng), phase)
+            .expect("a posture");
         let (a, b) = (ask(&*FRAME, &pose, &[]), ask(&frame, &pose, &[]));
         let odds = |p: &Posterior| p.rest / p.primitives[0];
-        assert!((odds(&b) / odds(&a) - 3.0).abs() < 1e-9 || a.rest == 0.0, "{a:?} {b:?}");
+        assert!(
+            (odds(&b) / odds(&a) - 3.0).abs() < 1e-9 || a.rest == 0.0,
+            "{a:?} {b:?}"
+        );
     }
 }
 
@@ -624,7 +688,11 @@ fn what_is_no_posture_of_the_body_is_refused() {
         assert!(hear([0.0, 0.1], &broken, &missing).is_ok());
         let other = Arc::new(kineme::ares().expect("ares"));
         let other = motion(&other, other.neutral());
-        assert!(recogniser.recognise(&Observations::complete(other)).is_err());
+        assert!(
+            recogniser
+                .recognise(&Observations::complete(other))
+                .is_err()
+        );
     }
     let wrong = FrameSettings {
         pieces: 0,

@@ -286,7 +286,11 @@ impl Guard {
         }
         for j in 0..joints {
             let known = seen.missing.is_empty() || !seen.missing[j];
-            if known && seen.pose[body.coordinates(j)].iter().any(|x| !x.is_finite()) {
+            if known
+                && seen.pose[body.coordinates(j)]
+                    .iter()
+                    .any(|x| !x.is_finite())
+            {
                 return Err(Error::invalid(format!(
                     "the coordinates of `{}` are not finite",
                     body.joints()[j].name

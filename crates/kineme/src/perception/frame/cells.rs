@@ -71,10 +71,7 @@ impl Cells {
             let nodes = 2 * patches + 1;
             let places = lattice(params, nodes);
             let strips: Vec<Strip> = places.par_iter().map(strip).collect::<Result<_>>()?;
-            let inside: Vec<bool> = places
-                .par_iter()
-                .map(|p| is_inside(primitive, p))
-                .collect();
+            let inside: Vec<bool> = places.par_iter().map(|p| is_inside(primitive, p)).collect();
             let strides: Vec<usize> = (0..params)
                 .map(|d| nodes.pow((params - 1 - d) as u32))
                 .collect();
@@ -175,10 +172,10 @@ fn patch(
         bend.fill(0.0);
         for (o, _) in offsets.iter().filter(|(_, digits)| digits[d] == 0) {
             let [a, b, c] = [0, 1, 2].map(|k| &strips[corner + o + k * stride]);
-            for i in 0..size {
+            for (i, bend) in bend.iter_mut().enumerate() {
                 let below = (b.low[i] - 0.5 * (a.low[i] + c.low[i])).abs();
                 let above = (b.high[i] - 0.5 * (a.high[i] + c.high[i])).abs();
-                bend[i] = bend[i].max(below).max(above);
+                *bend = bend.max(below).max(above);
             }
         }
         for i in 0..size {

@@ -132,7 +132,10 @@ mod tests {
             };
             let mut explained = || -> Explained {
                 (0..(shape.rows * shape.pieces) as u32)
-                    .filter_map(|c| rng.random_bool(0.5).then(|| (c, rng.random_range(0.1..1.0))))
+                    .filter_map(|c| {
+                        rng.random_bool(0.5)
+                            .then(|| (c, rng.random_range(0.1..1.0)))
+                    })
                     .collect()
             };
             let seen = [explained(), explained(), explained()];

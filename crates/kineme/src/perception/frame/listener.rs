@@ -55,9 +55,9 @@ impl Frame<'_> {
             .enumerate()
             .map(|(k, class)| {
                 let first = class.shape.begin(&window[0].classes[k]);
-                window[1..].iter().fold(first, |alpha, m| {
-                    class.shape.advance(&alpha, &m.classes[k])
-                })
+                window[1..]
+                    .iter()
+                    .fold(first, |alpha, m| class.shape.advance(&alpha, &m.classes[k]))
             })
             .collect();
         let mass = |e: &Explained| e.iter().map(|(_, v)| v).sum::<f64>();
@@ -100,7 +100,7 @@ impl Class {
         }
         let pieces = self.shape.pieces as u32;
         let ends = |m: &Moment| -> Explained {
-            let at_end = |c: &u32| c % pieces == 0 || c % pieces == pieces - 1;
+            let at_end = |c: &u32| [0, pieces - 1].contains(&(c % pieces));
             let cells = m.classes[class].iter();
             cells.filter(|(c, _)| at_end(c)).copied().collect()
         };
@@ -119,7 +119,8 @@ impl Class {
         }
         let pieces = self.shape.pieces as u32;
         let phase_of = |c: u32| (f64::from(c % pieces) + 0.5) / f64::from(pieces);
-        let mean = |of: &dyn Fn(u32) -> f64| alpha.iter().map(|&(c, a)| a * of(c)).sum::<f64>() / sum;
+        let mean =
+            |of: &dyn Fn(u32) -> f64| alpha.iter().map(|&(c, a)| a * of(c)).sum::<f64>() / sum;
         let phase = if self.shape.cyclic {
             let sine = mean(&|c| (TAU * phase_of(c)).sin());
             let cosine = mean(&|c| (TAU * phase_of(c)).cos());

@@ -146,12 +146,6 @@ impl<'v> Frame<'v> {
         self.scope.tolerances.delta
     }
 
-    /// The number of cells of each primitive.
-    pub fn cells(&self) -> Vec<usize> {
-        let count = |c: &Class| c.shape.rows * c.shape.pieces;
-        self.classes.iter().map(count).collect()
-    }
-
     fn moment(&self, seen: &Observation<'_>) -> Moment {
         let posture = self.scope.posture(seen);
         let query = Query {
@@ -162,20 +156,15 @@ impl<'v> Frame<'v> {
                 .collect(),
             gaps: posture.constant_gap.iter().map(|&g| g as f32).collect(),
         };
-        let mut novelty = f32::INFINITY;
-        let mut classes = Vec::with_capacity(self.classes.len());
-        for class in &self.classes {
+        let explained = |class: &Class| {
             let hits = class.tree.hits(&query);
-            let explained = hits.iter().map(|hit| {
-                novelty = novelty.min(hit.distance);
-                (hit.cell, self.density(hit.outside))
-            });
-            classes.push(explained.collect());
-        }
-        if novelty.is_infinite() {
-            for class in &self.classes {
-                novelty = class.tree.nearest(&query, novelty);
-            }
+            let density = |hit: &tree::Hit| (hit.cell, self.density(hit.outside));
+            hits.iter().map(density).collect()
+        };
+        let classes = self.classes.iter().map(explained).collect();
+        let mut novelty = f32::INFINITY;
+        for class in &self.classes {
+            novelty = class.tree.nearest(&query, novelty);
         }
         let known = self.log_within.iter().zip(&posture.seen);
         Moment {

@@ -19,9 +19,11 @@ pub struct FrameSettings {
     pub constant_rad: f64,
     /// How far readings may pass the joint limits, radians: widens the range of the uniform background.
     pub limits_rad: f64,
-    /// Parts of the body that may be at fault unannounced in a posture, 0 to 8: a broken sensor.
+    /// Parts of the body that may be at fault unannounced in a posture, 0 to 8. With 1, a broken sensor no longer
+    /// silences everything, but what a movement does with one part no longer tells, either: a movement of one arm is
+    /// then accepted backward.
     pub faults: usize,
-    /// How often a part is at fault, above 0 and below 1.
+    /// How often a part is at fault, above 0 and below 1; without effect where none may be.
     pub fault_rate: f64,
     /// Patches along each parameter of primitives with one, two and three parameters, 1 to 128, 32 and 12.
     pub patches: [usize; MOST_DIMS],
@@ -41,10 +43,10 @@ impl Default for FrameSettings {
             n: 2,
             stride: 4,
             delta_rad: 0.08,
-            residual: 2.0,
+            residual: 1.0,
             constant_rad: 0.35,
             limits_rad: 0.2,
-            faults: 1,
+            faults: 0,
             fault_rate: 0.02,
             patches: [32, 10, 5],
             pieces: 64,

@@ -21,8 +21,6 @@ pub(super) struct Hit {
     pub cell: u32,
     /// The parts that lie outside, one bit each.
     pub outside: u64,
-    /// How far the posture is from the box, in tolerances: of the part that is farthest but for those forgiven.
-    pub distance: f32,
 }
 
 /// Boxes of cells, found by a posture: a bounding tree split at medians of the coordinate that varies most.
@@ -40,8 +38,10 @@ pub(super) struct Tree {
     /// Least and greatest values of the same, cells x coordinates.
     boxes: Vec<[f32; 2]>,
     nodes: Vec<Node>,
-    /// The same of nodes.
+    /// The boxes around those of a node.
     node_boxes: Vec<[f32; 2]>,
+    /// What the boxes of a node have in common; least above greatest where they have nothing.
+    node_cores: Vec<[f32; 2]>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -77,6 +77,7 @@ impl Tree {
             boxes: (0..cells.count()).flat_map(of).collect(),
             nodes: Vec::new(),
             node_boxes: Vec::new(),
+            node_cores: Vec::new(),
         };
         let unsorted = tree.boxes.clone();
         let mut order = std::mem::take(&mut tree.cells);
@@ -93,7 +94,6 @@ impl Tree {
 
     fn split(&mut self, boxes: &[[f32; 2]], order: &mut [u32], first: usize, end: usize) {
         let node = self.nodes.len();
-        let start = self.node_boxes.len();
         self.nodes.push(Node {
             first,
             end,
@@ -102,15 +102,17 @@ impl Tree {
         let row = |cell: u32| &boxes[cell as usize * self.dims..(cell as usize + 1) * self.dims];
         let mut bounds = vec![[f32::INFINITY, f32::NEG_INFINITY]; self.dims];
         let mut middles = bounds.clone();
+        let mut cores = vec![[f32::NEG_INFINITY, f32::INFINITY]; self.dims];
         for &cell in &order[first..end] {
-            for ((b, m), x) in bounds.iter_mut().zip(&mut middles).zip(row(cell)) {
-                *b = [b[0].min(x[0]), b[1].max(x[1])];
+            for (c, x) in row(cell).iter().enumerate() {
                 let middle = x[0] + x[1];
-                *m = [m[0].min(middle), m[1].max(middle)];
+                bounds[c] = [bounds[c][0].min(x[0]), bounds[c][1].max(x[1])];
+                cores[c] = [cores[c][0].max(x[0]), cores[c][1].min(x[1])];
+                middles[c] = [middles[c][0].min(middle), middles[c][1].max(middle)];
             }
         }
         self.node_boxes.extend(bounds);
-        debug_assert_eq!(start, node * self.dims);
+        self.node_cores.extend(cores);
         if end - first <= LEAF || self.dims == 0 {
             return;
         }
@@ -169,6 +171,13 @@ impl Tree {
         farthest.max(0.0)
     }
 
+    /// Whether a posture lies within the tolerance of every box of a node.
+    fn is_core(&self, node: usize, query: &Query) -> bool {
+        let cores = &self.node_cores[node * self.dims..(node + 1) * self.dims];
+        let mut pairs = cores.iter().zip(&query.at);
+        pairs.all(|(b, x)| !(b[0] - x > self.delta || x - b[1] > self.delta))
+    }
+
     /// All cells whose box a posture lies in, in the order of cells.
     pub fn hits(&self, query: &Query) -> Vec<Hit> {
         let mut hits = Vec::new();
@@ -181,26 +190,24 @@ impl Tree {
         if off.count_ones() > self.faults || self.cells.is_empty() {
             return hits;
         }
-        let mut gaps = vec![0.0; query.gaps.len()];
         let mut stack = vec![0];
         while let Some(n) = stack.pop() {
-            if self.outside(self.node_box(n), query, off).is_none() {
+            let Some(outside) = self.outside(self.node_box(n), query, off) else {
                 continue;
-            }
+            };
             let node = self.nodes[n];
-            if node.second != 0 {
+            let cells = &self.cells[node.first..node.end];
+            if outside == off && self.is_core(n, query) {
+                let all = cells.iter().map(|&cell| Hit { cell, outside });
+                hits.extend(all);
+            } else if node.second != 0 {
                 stack.push(node.second);
                 stack.push(n + 1);
-                continue;
-            }
-            for at in node.first..node.end {
-                let bounds = self.cell_box(at);
-                if let Some(outside) = self.outside(bounds, query, off) {
-                    hits.push(Hit {
-                        cell: self.cells[at],
-                        outside,
-                        distance: self.distance(bounds, query, &mut gaps),
-                    });
+            } else {
+                for (at, &cell) in (node.first..).zip(cells) {
+                    if let Some(outside) = self.outside(self.cell_box(at), query, off) {
+                        hits.push(Hit { cell, outside });
+                    }
                 }
             }
         }
@@ -235,5 +242,102 @@ impl Tree {
             stack.extend(children);
         }
         best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    use super::*;
+
+    const DIMS: usize = 5;
+    const PARTS: usize = 3;
+    const PART_OF: [usize; DIMS] = [0, 0, 1, 2, 2];
+
+    /// Boxes along a curve in five dimensions, two coordinates each of two parts, one of a third.
+    fn cells(rng: &mut Pcg64) -> Cells {
+        let (rows, pieces) = (7, 20);
+        let (mut low, mut high) = (Vec::new(), Vec::new());
+        for row in 0..rows {
+            for piece in 0..pieces {
+                for c in 0..DIMS {
+                    let t = piece as f32 / 20.0 * (1.0 + c as f32) + 0.3 * row as f32;
+                    low.push(t.sin());
+                    high.push(t.sin() + rng.random_range(0.0..0.2));
+                }
+            }
+        }
+        Cells {
+            pieces,
+            cyclic: false,
+            params: 0,
+            points: Vec::new(),
+            reach: Vec::new(),
+            rows,
+            dims: DIMS,
+            low,
+            high,
+        }
+    }
+
+    /// How far each part of a posture is from the box of a cell, in tolerances.
+    fn gaps(cells: &Cells, cell: usize, query: &Query, delta: f32) -> Vec<f32> {
+        let mut gaps = query.gaps.clone();
+        for c in 0..DIMS {
+            let (low, high) = (cells.low[cell * DIMS + c], cells.high[cell * DIMS + c]);
+            let x = query.at[c];
+            let off = (low - x).max(x - high);
+            if !x.is_nan() && off > 0.0 {
+                gaps[PART_OF[c]] = gaps[PART_OF[c]].max(off / delta);
+            }
+        }
+        gaps
+    }
+
+    #[test]
+    fn the_tree_finds_what_looking_at_every_cell_finds() {
+        let mut rng = Pcg64::seed_from_u64(11);
+        let (mut found, mut far) = (0, 0);
+        for _ in 0..400 {
+            let cells = cells(&mut rng);
+            let delta = rng.random_range(0.05..0.8);
+            let faults = rng.random_range(0..3);
+            let columns = [3, 0, 4, 2, 1];
+            let part_of = columns.map(|c| PART_OF[c]);
+            let tree = Tree::new(&cells, &columns, &part_of, delta, faults);
+            let at: Vec<f32> = (0..DIMS)
+                .map(|_| match rng.random_bool(0.15) {
+                    true => f32::NAN,
+                    false => rng.random_range(-1.3..1.4),
+                })
+                .collect();
+            let plain = Query {
+                at,
+                gaps: (0..PARTS).map(|_| rng.random_range(0.0..1.2)).collect(),
+            };
+            let query = Query {
+                at: columns.iter().map(|&c| plain.at[c]).collect(),
+                gaps: plain.gaps.clone(),
+            };
+            let mut expected = Vec::new();
+            let mut nearest = f32::INFINITY;
+            for cell in 0..cells.count() {
+                let mut gaps = gaps(&cells, cell, &plain, delta as f32);
+                let outside: u64 = (0..PARTS).map(|p| u64::from(gaps[p] > 1.0) << p).sum();
+                if outside.count_ones() as usize <= faults {
+                    let cell = cell as u32;
+                    expected.push(Hit { cell, outside });
+                }
+                gaps.sort_by(|a, b| b.total_cmp(a));
+                nearest = nearest.min(gaps[faults]);
+            }
+            assert_eq!(tree.hits(&query), expected);
+            assert!((tree.nearest(&query, f32::INFINITY) - nearest).abs() < 1e-5);
+            found += usize::from(!expected.is_empty());
+            far += usize::from(expected.is_empty());
+        }
+        assert!(found > 50 && far > 50, "{found} {far}");
     }
 }

@@ -59,11 +59,14 @@ impl Samples {
     /// The samples of one coordinate, phase by phase.
     fn coordinate(&self, c: usize) -> Vec<Vec<f64>> {
         let size = self.points.len() * self.dims;
-        let of = |row: &[f32]| row.iter().skip(c).step_by(self.dims).map(|&x| f64::from(x)).collect::<Vec<f64>>();
-        self.values
-            .chunks_exact(size)
-            .map(of)
-            .collect()
+        let of = |row: &[f32]| {
+            row.iter()
+                .skip(c)
+                .step_by(self.dims)
+                .map(|&x| f64::from(x))
+                .collect::<Vec<f64>>()
+        };
+        self.values.chunks_exact(size).map(of).collect()
     }
 
     /// The least and greatest value of each coordinate.
@@ -175,37 +178,31 @@ impl Class {
     }
 
     /// Phase as a uniform draw from the phases left. The chain has forgotten which parameters produced the postures;
-    /// they are those of the samples at the middle phase within the tolerance of the last posture, else the nearest.
+    /// they are those of samples at these phases, each weighted by a Gaussian kernel of the tolerance's width on the
+    /// coordinate of the last posture that is farthest off.
     pub fn place(&self, primitive: usize, phases: &Intervals, last: &Posture, delta: f64) -> Place {
         let (phase, variance) = moments(phases).unwrap_or((0.0, 0.0));
-        let nearest = |&(a, b): &(f64, f64)| phase.clamp(a, b);
-        let by_distance = |a: &f64, b: &f64| (a - phase).abs().total_cmp(&(b - phase).abs());
-        let at = phases.iter().map(nearest).min_by(by_distance);
-        let rows = self.samples.phase(at.unwrap_or(phase).round() as usize);
-        let distances: Vec<f64> = rows
-            .chunks_exact(self.samples.dims)
-            .map(|row| {
+        let points = &self.samples.points;
+        let mut least = vec![f64::INFINITY; points.len()];
+        for at in some_of(phases) {
+            let rows = self.samples.phase(at).chunks_exact(self.samples.dims);
+            for (least, row) in least.iter_mut().zip(rows) {
                 let gap = |c: &Coordinate| (f64::from(row[c.at]) - last.place[c.at]).abs();
-                self.order.iter().map(gap).fold(0.0, f64::max)
-            })
-            .collect();
-        let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
-        let own: Vec<&Vec<f64>> = self
-            .samples
-            .points
-            .iter()
-            .zip(&distances)
-            .filter(|(_, d)| **d <= delta.max(least))
-            .map(|(p, _)| p)
-            .collect();
-        let n = own.len() as f64;
-        let params = own[0].len();
-        let mean = |d: usize| own.iter().map(|p| p[d]).sum::<f64>() / n;
-        let parameters: Vec<f64> = (0..params).map(mean).collect();
-        let deviation = |d: usize| {
-            let square: f64 = own.iter().map(|p| (p[d] - parameters[d]).powi(2)).sum();
-            (square / n).sqrt()
+                let farthest = self.order.iter().map(gap).fold(0.0, f64::max);
+                *least = least.min(farthest);
+            }
+        }
+        let nearest = least.iter().copied().fold(f64::INFINITY, f64::min);
+        let kernel = |d: &f64| (0.5 * (nearest * nearest - d * d) / (delta * delta)).exp();
+        let weights: Vec<f64> = least.iter().map(kernel).collect();
+        let whole: f64 = weights.iter().sum();
+        let mean = |of: &dyn Fn(&[f64]) -> f64| {
+            let pairs = points.iter().zip(&weights);
+            pairs.map(|(p, w)| w * of(p)).sum::<f64>() / whole
         };
+        let params = points[0].len();
+        let parameters: Vec<f64> = (0..params).map(|d| mean(&|p| p[d])).collect();
+        let deviation = |d: usize| mean(&|p| (p[d] - parameters[d]).powi(2)).sqrt();
         let pieces = self.pieces as f64;
         Place {
             primitive,
@@ -215,6 +212,22 @@ impl Class {
             parameters,
         }
     }
+}
+
+/// Sampled phases in a set, or next to it where it holds none; of many every so many.
+fn some_of(phases: &Intervals) -> Vec<usize> {
+    const MOST: usize = 16;
+    let mut all: Vec<usize> = Vec::new();
+    for &(from, to) in phases {
+        let (a, b) = (from.ceil() as usize, to.floor() as usize);
+        match a <= b {
+            true => all.extend(a..=b),
+            false => all.push((0.5 * (from + to)).round() as usize),
+        }
+    }
+    all.dedup();
+    let step = all.len().div_ceil(MOST).max(1);
+    all.into_iter().step_by(step).collect()
 }
 
 /// How much a coordinate tells about phase: how far the middle of its envelope goes, over how wide the envelope is.

@@ -123,9 +123,10 @@ impl<'v> Paper<'v> {
             Some(self.classes[k].place(k, phases, last, delta))
         });
         let constant = last.constant_gap.iter().copied().fold(0.0, f64::max);
-        let distance = self.classes.iter().fold(f64::INFINITY, |least, c| {
-            c.distance(last, delta, least)
-        });
+        let distance = self
+            .classes
+            .iter()
+            .fold(f64::INFINITY, |least, c| c.distance(last, delta, least));
         Reading {
             posterior,
             place,
