@@ -342,7 +342,7 @@ fn a_missing_joint_is_its_marginal() {
         let mut pose = primitive.pose(&[0.4, 0.7], phase).expect("a posture");
         let marginal = odds(&ask(&frame, &pose, &missing));
         let steps = 400;
-        let mut mean = vec![0.0; 3];
+        let mut mean = [0.0; 3];
         for i in 0..steps {
             pose[at] = low + (high - low) * (f64::from(i) + 0.5) / f64::from(steps);
             for (m, o) in mean.iter_mut().zip(odds(&ask(&frame, &pose, &[]))) {

@@ -1,5 +1,6 @@
 //! Floor 5: recognising movement with the same vocabulary that makes it (paper, section V).
 
+mod checked;
 mod frame;
 mod paper;
 mod parts;

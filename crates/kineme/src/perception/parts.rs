@@ -178,7 +178,9 @@ pub(super) struct Scope {
     pub moving: Vec<usize>,
     /// Coordinates that none moves, and the value that all have.
     pub constant: Vec<(usize, f64)>,
-    /// The middle of each coordinate.
+    /// The least and greatest value of each coordinate over all primitives.
+    bounds: Vec<[f64; 2]>,
+    /// The middle of the same.
     middle: Vec<f64>,
     /// Where each coordinate may be: joint limits and whatever the primitives do, widened by the tolerance.
     ranges: Vec<[f64; 2]>,
@@ -196,13 +198,25 @@ pub(super) struct Posture {
 }
 
 impl Scope {
-    /// From the least and greatest value of each coordinate over all primitives.
-    pub fn new(parts: Parts, bounds: &[[f64; 2]], tolerances: Tolerances) -> Self {
+    /// From the least and greatest value of each coordinate in each primitive.
+    pub fn new(
+        parts: Parts,
+        primitives: impl IntoIterator<Item = Vec<[f64; 2]>>,
+        tolerances: Tolerances,
+    ) -> Self {
+        let join = |mut all: Vec<[f64; 2]>, own: Vec<[f64; 2]>| {
+            for (b, o) in all.iter_mut().zip(own) {
+                *b = [b[0].min(o[0]), b[1].max(o[1])];
+            }
+            all
+        };
+        let bounds = primitives.into_iter().reduce(join);
+        let bounds = bounds.unwrap_or_else(|| vec![[0.0, 0.0]; parts.dims()]);
         let width = |c: usize| bounds[c][1] - bounds[c][0];
         let middle: Vec<f64> = bounds.iter().map(|b| 0.5 * (b[0] + b[1])).collect();
         let (moving, still): (Vec<usize>, Vec<usize>) =
             (0..parts.dims()).partition(|&c| width(c) > STILL_RAD);
-        let ranges = parts.limits.iter().zip(bounds).map(|(l, b)| {
+        let ranges = parts.limits.iter().zip(&bounds).map(|(l, b)| {
             let wide = tolerances.limits;
             [l[0].min(b[0]) - wide, l[1].max(b[1]) + wide]
         });
@@ -213,7 +227,13 @@ impl Scope {
             tolerances,
             moving,
             middle,
+            bounds,
         }
+    }
+
+    /// How far a coordinate goes over all primitives, radians.
+    pub fn extent(&self, coordinate: usize) -> f64 {
+        self.bounds[coordinate][1] - self.bounds[coordinate][0]
     }
 
     /// The length of a coordinate's range, radians.

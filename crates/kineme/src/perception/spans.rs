@@ -174,42 +174,39 @@ fn parameters(readings: &[Reading], primitive: usize) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
     use super::*;
 
-    /// Worths of two answers and nothing, from a string of letters.
-    fn of(letters: &str) -> Vec<Vec<f64>> {
-        let row = |l: char| "ab.".chars().map(|k| if k == l { 0.8 } else { 0.1 });
-        letters.chars().map(|l| row(l).collect()).collect()
+    /// Lengths of the runs of equal labels.
+    fn runs(labels: &[usize]) -> Vec<usize> {
+        labels.chunk_by(|a, b| a == b).map(<[usize]>::len).collect()
     }
 
     #[test]
-    fn short_answers_are_absorbed_and_long_ones_stay() {
-        for (seen, dwell, told) in [
-            ("aaaabaaaa", 1, "aaaabaaaa"),
-            ("aaaabaaaa", 3, "aaaaaaaaa"),
-            ("aaaabbbbb", 3, "aaaabbbbb"),
-            ("aaaaabb", 3, "aaaaaaa"),
-            ("aabbb", 3, "bbbbb"),
-            ("..aab.bbb..", 3, "..aaabbbb.."),
-            ("ab", 5, "aa"),
-        ] {
-            let labels = division(&of(seen), dwell);
-            let label = |&l: &usize| ['a', 'b', '.'][l];
-            let text: String = labels.iter().map(label).collect();
-            if told.len() == seen.len() && seen != "..aab.bbb.." {
-                assert_eq!(text, told, "{seen} {dwell}");
-            }
-            let mut runs = vec![1];
-            for pair in labels.windows(2) {
-                match pair[0] == pair[1] {
-                    true => *runs.last_mut().expect("one") += 1,
-                    false => runs.push(1),
-                }
-            }
-            assert!(
-                runs.iter().all(|&r| r >= dwell.min(seen.len())),
-                "{seen} {dwell}: {text}"
-            );
+    fn the_division_is_the_best_of_all_without_short_parts() {
+        let mut rng = Pcg64::seed_from_u64(12);
+        for case in 0..150 {
+            let (frames, dwell) = (1 + case % 7, 1 + case / 7 % 4);
+            let worths: Vec<Vec<f64>> = (0..frames)
+                .map(|_| (0..3).map(|_| rng.random_range(0.0..1.0)).collect())
+                .collect();
+            let worth = |labels: &[usize]| -> f64 {
+                labels.iter().zip(&worths).map(|(&l, row)| row[l]).sum()
+            };
+            let long = |labels: &[usize]| runs(labels).iter().all(|&r| r >= dwell.min(frames));
+            let all = (0..3_usize.pow(frames as u32)).map(|code| {
+                let digit = |f: usize| code / 3_usize.pow(f as u32) % 3;
+                (0..frames).map(digit).collect::<Vec<usize>>()
+            });
+            let best = all
+                .filter(|l| long(l))
+                .map(|l| worth(&l))
+                .fold(0.0, f64::max);
+            let found = division(&worths, dwell);
+            assert!(long(&found), "{dwell}: {found:?}");
+            assert!((worth(&found) - best).abs() < 1e-12, "{dwell}: {found:?}");
         }
     }
 }

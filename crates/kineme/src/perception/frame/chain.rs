@@ -132,10 +132,8 @@ mod tests {
             };
             let mut explained = || -> Explained {
                 (0..(shape.rows * shape.pieces) as u32)
-                    .filter_map(|c| {
-                        rng.random_bool(0.5)
-                            .then(|| (c, rng.random_range(0.1..1.0)))
-                    })
+                    .map(|c| (c, rng.random_range(-1.0..1.0)))
+                    .filter(|(_, e)| *e > 0.0)
                     .collect()
             };
             let seen = [explained(), explained(), explained()];

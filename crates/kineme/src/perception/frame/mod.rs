@@ -34,7 +34,8 @@ use crate::primitive::{
 ///
 /// **Density.** A cell explains a posture of which all parts lie within the tolerance of the cell's box. A part's
 /// density is a mixture: within tolerance with probability 1 - fault rate, anywhere in its range otherwise, and at most
-/// `faults` parts are at fault at once. A part that was not seen has factor 1. The background, none, is uniform over
+/// `faults` parts are at fault at once. A part that was not seen has factor 1, its marginal (boxes count as wide as the
+/// tolerance alone, so it is the marginal but for the cells' own width). The background, none, is uniform over
 /// the ranges; rest is a posture in the first or last piece of phase of a primitive that is no cycle, all primitives
 /// counting alike, and one that stays there over all n postures.
 ///
@@ -93,24 +94,17 @@ impl<'v> Frame<'v> {
             .iter()
             .map(cut)
             .collect::<Result<_>>()?;
-        let mut bounds = vec![[f64::INFINITY, f64::NEG_INFINITY]; parts.dims()];
-        for own in cells.iter().map(Cells::bounds) {
-            for (b, o) in bounds.iter_mut().zip(own) {
-                *b = [b[0].min(o[0]), b[1].max(o[1])];
-            }
-        }
-        if cells.is_empty() {
-            bounds.fill([0.0, 0.0]);
-        }
         let tolerances = Tolerances {
             delta: widened(vocabulary, settings.delta_rad, settings.residual),
             constant: settings.constant_rad,
             limits: settings.limits_rad,
         };
-        let scope = Scope::new(parts, &bounds, tolerances);
+        let scope = Scope::new(parts, cells.iter().map(Cells::bounds), tolerances);
         let mut columns = scope.moving.clone();
-        let width = |c: usize| bounds[c][1] - bounds[c][0];
-        columns.sort_by(|&a, &b| width(b).total_cmp(&width(a)).then(a.cmp(&b)));
+        columns.sort_by(|&a, &b| {
+            let by_extent = scope.extent(b).total_cmp(&scope.extent(a));
+            by_extent.then(a.cmp(&b))
+        });
         let part_of: Vec<usize> = columns.iter().map(|&c| scope.parts.part_of(c)).collect();
         let open = cells.iter().filter(|c| !c.cyclic).count();
         let classes = cells.into_iter().map(|c| Class {

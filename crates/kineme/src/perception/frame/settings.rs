@@ -1,6 +1,7 @@
 //! [`FrameSettings`]: how the exact frame classifier sees.
 
 use crate::error::{Error, Result};
+use crate::perception::checked::{counts, not_negative, positive};
 use crate::perception::rows::MOST_DIMS;
 
 /// How [`super::Frame`] sees.
@@ -8,7 +9,7 @@ use crate::perception::rows::MOST_DIMS;
 pub struct FrameSettings {
     /// Postures that are judged together, 1 to 64.
     pub n: usize,
-    /// Frames from one of them to the next, at least 1. Consecutive frames lie within one tolerance of each other and
+    /// Frames from one of them to the next, 1 to 1000. Consecutive frames lie within one tolerance of each other and
     /// say little about direction; 4 or more at 60 Hz do.
     pub stride: usize,
     /// A coordinate counts as equal within this, radians.
@@ -60,40 +61,26 @@ impl Default for FrameSettings {
 impl FrameSettings {
     pub(super) fn check(&self) -> Result<()> {
         let [one, two, three] = self.patches;
-        for (name, value, least, most) in [
+        counts(&[
             ("n", self.n, 1, 64),
-            ("stride", self.stride, 1, 10_000),
+            ("stride", self.stride, 1, 1000),
             ("faults", self.faults, 0, 8),
             ("patches of one parameter", one, 1, 128),
             ("patches of two parameters", two, 1, 32),
             ("patches of three parameters", three, 1, 12),
             ("pieces", self.pieces, 4, 512),
-        ] {
-            if !(least..=most).contains(&value) {
-                return Err(Error::invalid(format!(
-                    "{name} must lie in {least} to {most}, found {value}"
-                )));
-            }
-        }
-        for (name, value, least) in [
-            ("delta_rad", self.delta_rad, f64::MIN_POSITIVE),
-            ("constant_rad", self.constant_rad, f64::MIN_POSITIVE),
-            ("residual", self.residual, 0.0),
-            ("limits_rad", self.limits_rad, 0.0),
-            ("prior_rest", self.prior_rest, 0.0),
-            ("prior_none", self.prior_none, f64::MIN_POSITIVE),
-            ("dwell_secs", self.dwell_secs, 0.0),
-        ] {
-            if !(value.is_finite() && value >= least) {
-                return Err(Error::invalid(format!(
-                    "{name} must be {}, found {value}",
-                    match least > 0.0 {
-                        true => "positive",
-                        false => "0 or more",
-                    }
-                )));
-            }
-        }
+        ])?;
+        positive(&[
+            ("delta_rad", self.delta_rad),
+            ("constant_rad", self.constant_rad),
+            ("prior_none", self.prior_none),
+        ])?;
+        not_negative(&[
+            ("residual", self.residual),
+            ("limits_rad", self.limits_rad),
+            ("prior_rest", self.prior_rest),
+            ("dwell_secs", self.dwell_secs),
+        ])?;
         if !(self.fault_rate > 0.0 && self.fault_rate < 1.0) {
             return Err(Error::invalid(format!(
                 "fault_rate must lie between 0 and 1, found {}",

@@ -10,6 +10,7 @@ use crate::perception::rows::{MOST_DIMS, is_inside, lattice, own_places};
 use crate::primitive::{Place, Primitive};
 
 /// Samples of f: all parameters sampled at all ends of pieces of phase.
+#[derive(Debug)]
 pub(super) struct Samples {
     /// Parameters, samples x parameters.
     points: Vec<Vec<f64>>,
@@ -82,6 +83,7 @@ impl Samples {
 }
 
 /// One primitive.
+#[derive(Debug)]
 pub(super) struct Class {
     samples: Samples,
     pieces: usize,
@@ -90,6 +92,7 @@ pub(super) struct Class {
     order: Vec<Coordinate>,
 }
 
+#[derive(Debug)]
 struct Coordinate {
     at: usize,
     envelope: Envelope,

@@ -40,6 +40,7 @@ use crate::primitive::{
 ///
 /// **Order.** Of the joints, those first that tell most about phase. What is learned of parameters is not carried from
 /// joint to joint, nor from posture to posture.
+#[derive(Debug)]
 pub struct Paper<'v> {
     vocabulary: &'v Vocabulary,
     settings: PaperSettings,
@@ -60,21 +61,12 @@ impl<'v> Paper<'v> {
             .iter()
             .map(|p| Samples::of(p, &parts, &settings.samples, settings.pieces))
             .collect::<Result<_>>()?;
-        let mut bounds = vec![[f64::INFINITY, f64::NEG_INFINITY]; parts.dims()];
-        for own in samples.iter().map(Samples::bounds) {
-            for (b, o) in bounds.iter_mut().zip(own) {
-                *b = [b[0].min(o[0]), b[1].max(o[1])];
-            }
-        }
-        if samples.is_empty() {
-            bounds.fill([0.0, 0.0]);
-        }
         let tolerances = Tolerances {
             delta: widened(vocabulary, settings.delta_rad, settings.residual),
             constant: settings.constant_rad,
             limits: settings.limits_rad,
         };
-        let scope = Scope::new(parts, &bounds, tolerances);
+        let scope = Scope::new(parts, samples.iter().map(Samples::bounds), tolerances);
         let primitives = vocabulary.primitives().iter().zip(samples);
         let classes = primitives
             .map(|(p, own)| Class::new(own, &scope, settings.pieces, p.is_cyclic()))

@@ -1,6 +1,7 @@
 //! [`PaperSettings`]: how the paper's classifier sees.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::perception::checked::{counts, not_negative, positive};
 use crate::perception::rows::MOST_DIMS;
 
 /// How [`super::Paper`] sees. The paper publishes n alone; every other number is ours.
@@ -8,7 +9,7 @@ use crate::perception::rows::MOST_DIMS;
 pub struct PaperSettings {
     /// Postures that are judged together, 1 to 64: 1 and 2 in the paper's table.
     pub n: usize,
-    /// Frames from one of them to the next, at least 1.
+    /// Frames from one of them to the next, 1 to 1000.
     pub stride: usize,
     /// A coordinate counts as equal within this, radians; no bin of a histogram is narrower.
     pub delta_rad: f64,
@@ -46,37 +47,23 @@ impl Default for PaperSettings {
 impl PaperSettings {
     pub(super) fn check(&self) -> Result<()> {
         let [one, two, three] = self.samples;
-        for (name, value, least, most) in [
+        counts(&[
             ("n", self.n, 1, 64),
-            ("stride", self.stride, 1, 10_000),
+            ("stride", self.stride, 1, 1000),
             ("pieces", self.pieces, 4, 512),
             ("samples of one parameter", one, 2, 128),
             ("samples of two parameters", two, 2, 32),
             ("samples of three parameters", three, 2, 12),
-        ] {
-            if !(least..=most).contains(&value) {
-                return Err(Error::invalid(format!(
-                    "{name} must lie in {least} to {most}, found {value}"
-                )));
-            }
-        }
-        for (name, value, least) in [
-            ("delta_rad", self.delta_rad, f64::MIN_POSITIVE),
-            ("constant_rad", self.constant_rad, f64::MIN_POSITIVE),
-            ("residual", self.residual, 0.0),
-            ("limits_rad", self.limits_rad, 0.0),
-            ("dwell_secs", self.dwell_secs, 0.0),
-        ] {
-            if !(value.is_finite() && value >= least) {
-                return Err(Error::invalid(format!(
-                    "{name} must be {}, found {value}",
-                    match least > 0.0 {
-                        true => "positive",
-                        false => "0 or more",
-                    }
-                )));
-            }
-        }
+        ])?;
+        positive(&[
+            ("delta_rad", self.delta_rad),
+            ("constant_rad", self.constant_rad),
+        ])?;
+        not_negative(&[
+            ("residual", self.residual),
+            ("limits_rad", self.limits_rad),
+            ("dwell_secs", self.dwell_secs),
+        ])?;
         Ok(())
     }
 }
