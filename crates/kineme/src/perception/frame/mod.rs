@@ -25,6 +25,9 @@ use crate::primitive::{
     Listener, Observation, Observations, Recogniser, Recognition, Vocabulary, readings,
 };
 
+/// Boxes of each primitive that are looked at to tell how new a posture is that lies in none.
+const NOVELTY_VISITS: usize = 160;
+
 /// The exact frame classifier: posterior over primitives, rest and none from the last few postures.
 ///
 /// **What is compared.** Joint coordinates part by part of the body, a part being the joints of one role: the angles of
@@ -38,6 +41,9 @@ use crate::primitive::{
 /// tolerance alone, so it is the marginal but for the cells' own width). The background, none, is uniform over
 /// the ranges; rest is a posture in the first or last piece of phase of a primitive that is no cycle, all primitives
 /// counting alike, and one that stays there over all n postures.
+///
+/// **Novelty** is how far the latest posture is from the nearest cell, in tolerances, by the part that is farthest off
+/// (faults forgiven); beyond 1 an upper bound, from a search of bounded length.
 ///
 /// **What the posterior means.** With a tolerance far below the ranges of a dozen joints and more, any cell that
 /// explains a posture outweighs the background: between known and unknown the answer is a test of support, and close
@@ -156,10 +162,11 @@ impl<'v> Frame<'v> {
             hits.iter().map(density).collect()
         };
         let classes = self.classes.iter().map(explained).collect();
-        let mut novelty = f32::INFINITY;
-        for class in &self.classes {
-            novelty = class.tree.nearest(&query, novelty);
-        }
+        let distances = self
+            .classes
+            .iter()
+            .map(|c| c.tree.nearest(&query, NOVELTY_VISITS));
+        let novelty = distances.fold(f32::INFINITY, f32::min);
         let known = self.log_within.iter().zip(&posture.seen);
         Moment {
             classes,

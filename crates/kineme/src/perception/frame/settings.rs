@@ -49,7 +49,7 @@ impl Default for FrameSettings {
             limits_rad: 0.2,
             faults: 0,
             fault_rate: 0.02,
-            patches: [32, 10, 5],
+            patches: [24, 8, 4],
             pieces: 64,
             prior_rest: 1.0,
             prior_none: 1.0,

@@ -215,16 +215,19 @@ impl Tree {
         hits
     }
 
-    /// How far a posture is from the nearest box, in tolerances, or `most` where no box is nearer than that.
-    pub fn nearest(&self, query: &Query, most: f32) -> f32 {
+    /// How far a posture is from the nearest box, in tolerances: exact where it is at most 1. Farther off, where bounds
+    /// of many coordinates exclude little, the nearest of `visits` boxes looked at, the likeliest first.
+    pub fn nearest(&self, query: &Query, visits: usize) -> f32 {
         if self.cells.is_empty() {
-            return most;
+            return f32::INFINITY;
         }
         let mut gaps = vec![0.0; query.gaps.len()];
-        let mut best = most;
+        let mut best = f32::INFINITY;
+        let mut visited = 0;
         let mut stack = vec![(0, self.distance(self.node_box(0), query, &mut gaps))];
         while let Some((n, least)) = stack.pop() {
-            if least >= best {
+            // What may hold a posture is looked at, however many went before.
+            if least >= best || (least > 1.0 && visited >= visits) {
                 continue;
             }
             let node = self.nodes[n];
@@ -232,6 +235,7 @@ impl Tree {
                 for at in node.first..node.end {
                     best = best.min(self.distance(self.cell_box(at), query, &mut gaps));
                 }
+                visited += node.end - node.first;
                 continue;
             }
             let mut children = [n + 1, node.second]
@@ -239,6 +243,7 @@ impl Tree {
             if children[0].1 < children[1].1 {
                 children.swap(0, 1);
             }
+            visited += 2;
             stack.extend(children);
         }
         best
@@ -334,7 +339,10 @@ mod tests {
                 nearest = nearest.min(gaps[faults]);
             }
             assert_eq!(tree.hits(&query), expected);
-            assert!((tree.nearest(&query, f32::INFINITY) - nearest).abs() < 1e-5);
+            assert!((tree.nearest(&query, usize::MAX) - nearest).abs() < 1e-5);
+            let quick = tree.nearest(&query, 20);
+            assert!(quick > nearest - 1e-5);
+            assert!((quick - nearest).abs() < 1e-5 || nearest > 1.0 - 1e-5);
             found += usize::from(!expected.is_empty());
             far += usize::from(expected.is_empty());
         }
