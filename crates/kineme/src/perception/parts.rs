@@ -272,8 +272,8 @@ impl Scope {
     }
 }
 
-/// Half width of "equals" for a vocabulary: a tolerance, widened by a multiple of what its exemplars leave unexplained,
-/// their mean leave-one-out error.
+/// Half width of "equals" for a vocabulary: a tolerance, or a multiple of what its exemplars leave unexplained, their
+/// mean leave-one-out error, where that is more.
 pub(super) fn widened(vocabulary: &Vocabulary, delta_rad: f64, residual: f64) -> f64 {
     let errors: Vec<f64> = vocabulary
         .primitives()
@@ -281,7 +281,7 @@ pub(super) fn widened(vocabulary: &Vocabulary, delta_rad: f64, residual: f64) ->
         .filter_map(|p| p.fitted().error.map(|e| e.joint_rad))
         .collect();
     let mean = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
-    delta_rad + residual * mean
+    delta_rad.max(residual * mean)
 }
 
 /// Guards a stream: postures are of the body, and their times rise.

@@ -141,7 +141,7 @@ impl<'v> Frame<'v> {
         })
     }
 
-    /// Half width of "equals" for this vocabulary, radians: the setting, widened by its leave-one-out error.
+    /// Half width of "equals" for this vocabulary, radians: the setting, or what its leave-one-out error asks for.
     pub fn delta_rad(&self) -> f64 {
         self.scope.tolerances.delta
     }

@@ -12,9 +12,9 @@ pub struct FrameSettings {
     /// Frames from one of them to the next, 1 to 1000. Consecutive frames lie within one tolerance of each other and
     /// say little about direction; 4 or more at 60 Hz do.
     pub stride: usize,
-    /// A coordinate counts as equal within this, radians.
+    /// A coordinate counts as equal within this at least, radians.
     pub delta_rad: f64,
-    /// The mean leave-one-out error of the vocabulary widens it by so many times as much.
+    /// The tolerance is this multiple of the vocabulary's mean leave-one-out error where that is more.
     pub residual: f64,
     /// The same for coordinates that no primitive moves, radians.
     pub constant_rad: f64,
@@ -44,7 +44,7 @@ impl Default for FrameSettings {
             n: 2,
             stride: 4,
             delta_rad: 0.08,
-            residual: 1.0,
+            residual: 2.5,
             constant_rad: 0.35,
             limits_rad: 0.2,
             faults: 0,

@@ -11,9 +11,9 @@ pub struct PaperSettings {
     pub n: usize,
     /// Frames from one of them to the next, 1 to 1000.
     pub stride: usize,
-    /// A coordinate counts as equal within this, radians; no bin of a histogram is narrower.
+    /// A coordinate counts as equal within this at least, radians; no bin of a histogram is narrower.
     pub delta_rad: f64,
-    /// The mean leave-one-out error of the vocabulary widens it by so many times as much.
+    /// The tolerance is this multiple of the vocabulary's mean leave-one-out error where that is more.
     pub residual: f64,
     /// The same for coordinates that no primitive moves, radians.
     pub constant_rad: f64,
@@ -34,7 +34,7 @@ impl Default for PaperSettings {
             n: 2,
             stride: 1,
             delta_rad: 0.08,
-            residual: 1.0,
+            residual: 2.5,
             constant_rad: 0.35,
             limits_rad: 0.2,
             pieces: 128,
