@@ -14,6 +14,14 @@ pub(super) struct Query {
     pub gaps: Vec<f32>,
 }
 
+impl Query {
+    /// The parts that are farther off than so many tolerances, whatever the boxes hold.
+    fn beyond(&self, most: f32) -> u64 {
+        let far = |(part, gap): (usize, &f32)| u64::from(*gap > most) << part;
+        self.gaps.iter().enumerate().map(far).sum()
+    }
+}
+
 /// A box that a posture lies in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Hit {
@@ -141,10 +149,17 @@ impl Tree {
         &self.boxes[at * self.dims..(at + 1) * self.dims]
     }
 
-    /// The parts of a posture that are farther from a box than the tolerance; `None` as soon as they are too many.
-    fn outside(&self, bounds: &[[f32; 2]], query: &Query, mut outside: u64) -> Option<u64> {
+    /// The parts of a posture that are farther than `reach` from a box, those in `outside` among them; `None` as soon as
+    /// they are too many.
+    fn outside(
+        &self,
+        bounds: &[[f32; 2]],
+        query: &Query,
+        reach: f32,
+        mut outside: u64,
+    ) -> Option<u64> {
         for ((b, x), &part) in bounds.iter().zip(&query.at).zip(&self.part_of) {
-            if b[0] - x > self.delta || x - b[1] > self.delta {
+            if b[0] - x > reach || x - b[1] > reach {
                 outside |= 1 << part;
                 if outside.count_ones() > self.faults {
                     return None;
@@ -154,8 +169,22 @@ impl Tree {
         Some(outside)
     }
 
-    /// How far a posture is from a box, in tolerances, the farthest parts forgiven.
-    fn distance(&self, bounds: &[[f32; 2]], query: &Query, gaps: &mut [f32]) -> f32 {
+    /// How far a posture is from a box, in tolerances, the farthest parts forgiven; infinite where that is more than
+    /// `most`, `off` being the parts of which the query says so.
+    fn distance(
+        &self,
+        bounds: &[[f32; 2]],
+        query: &Query,
+        most: f32,
+        off: u64,
+        gaps: &mut [f32],
+    ) -> f32 {
+        if self
+            .outside(bounds, query, most * self.delta, off)
+            .is_none()
+        {
+            return f32::INFINITY;
+        }
         gaps.copy_from_slice(&query.gaps);
         for ((b, x), &part) in bounds.iter().zip(&query.at).zip(&self.part_of) {
             let gap = (b[0] - x).max(x - b[1]) / self.delta;
@@ -181,18 +210,13 @@ impl Tree {
     /// All cells whose box a posture lies in, in the order of cells.
     pub fn hits(&self, query: &Query) -> Vec<Hit> {
         let mut hits = Vec::new();
-        let mut off = 0u64;
-        for (part, &gap) in query.gaps.iter().enumerate() {
-            if gap > 1.0 {
-                off |= 1 << part;
-            }
-        }
+        let off = query.beyond(1.0);
         if off.count_ones() > self.faults || self.cells.is_empty() {
             return hits;
         }
         let mut stack = vec![0];
         while let Some(n) = stack.pop() {
-            let Some(outside) = self.outside(self.node_box(n), query, off) else {
+            let Some(outside) = self.outside(self.node_box(n), query, self.delta, off) else {
                 continue;
             };
             let node = self.nodes[n];
@@ -205,7 +229,7 @@ impl Tree {
                 stack.push(n + 1);
             } else {
                 for (at, &cell) in (node.first..).zip(cells) {
-                    if let Some(outside) = self.outside(self.cell_box(at), query, off) {
+                    if let Some(outside) = self.outside(self.cell_box(at), query, self.delta, off) {
                         hits.push(Hit { cell, outside });
                     }
                 }
@@ -222,9 +246,9 @@ impl Tree {
             return f32::INFINITY;
         }
         let mut gaps = vec![0.0; query.gaps.len()];
-        let mut best = f32::INFINITY;
+        let (mut best, mut off) = (f32::INFINITY, 0);
         let mut visited = 0;
-        let mut stack = vec![(0, self.distance(self.node_box(0), query, &mut gaps))];
+        let mut stack = vec![(0, 0.0)];
         while let Some((n, least)) = stack.pop() {
             // What may hold a posture is looked at, however many went before.
             if least >= best || (least > 1.0 && visited >= visits) {
@@ -233,13 +257,20 @@ impl Tree {
             let node = self.nodes[n];
             if node.second == 0 {
                 for at in node.first..node.end {
-                    best = best.min(self.distance(self.cell_box(at), query, &mut gaps));
+                    let bounds = self.cell_box(at);
+                    let distance = self.distance(bounds, query, best, off, &mut gaps);
+                    if distance < best {
+                        best = distance;
+                        off = query.beyond(best);
+                    }
                 }
                 visited += node.end - node.first;
                 continue;
             }
-            let mut children = [n + 1, node.second]
-                .map(|c| (c, self.distance(self.node_box(c), query, &mut gaps)));
+            let mut children = [n + 1, node.second].map(|c| {
+                let bounds = self.node_box(c);
+                (c, self.distance(bounds, query, best, off, &mut gaps))
+            });
             if children[0].1 < children[1].1 {
                 children.swap(0, 1);
             }
