@@ -34,7 +34,7 @@ impl Default for PaperSettings {
             n: 2,
             stride: 1,
             delta_rad: 0.08,
-            residual: 2.5,
+            residual: 1.0,
             constant_rad: 0.35,
             limits_rad: 0.2,
             pieces: 128,
