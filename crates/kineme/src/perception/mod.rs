@@ -1,5 +1,13 @@
 //! Floor 5: recognising movement with the same vocabulary that makes it (paper, section V).
 
+mod checked;
 mod filter;
+mod frame;
+mod paper;
+mod parts;
+mod rows;
+mod spans;
 
 pub use filter::{Filter, FilterSettings};
+pub use frame::{Frame, FrameSettings};
+pub use paper::{Paper, PaperSettings};
