@@ -1,6 +1,7 @@
 //! Floor 3: the model: exemplars, primitives f(p, τ), the vocabulary.
 
 mod aim;
+mod calibration;
 mod course;
 mod curve;
 mod exemplar;
@@ -18,6 +19,7 @@ mod structure;
 mod vocabulary;
 
 pub use aim::{Aim, Reached};
+pub use calibration::Calibration;
 pub use course::{Course, Sample, Travel};
 pub use exemplar::{Exemplar, Provenance};
 pub use fitting::SHAPE_PHASES;

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use super::calibration::Calibration;
 use super::model::Primitive;
 use crate::error::{Error, Result};
 use crate::skeleton::Skeleton;
@@ -54,6 +55,7 @@ pub struct Vocabulary {
     primitives: Vec<Primitive>,
     behaviors: Vec<Behavior>,
     transitions: Transitions,
+    calibrations: Vec<Calibration>,
 }
 
 impl Vocabulary {
@@ -106,7 +108,43 @@ impl Vocabulary {
             primitives,
             behaviors,
             transitions,
+            calibrations: Vec::new(),
         })
+    }
+
+    /// The same vocabulary with what a recogniser learned of it, in place of what that one had learned before.
+    ///
+    /// # Errors
+    /// When the numbers are not finite, not of as many primitives, or not equally many of each.
+    pub fn calibrated(mut self, calibration: Calibration) -> Result<Self> {
+        let numbers = &calibration.primitives;
+        let equal = numbers.windows(2).all(|w| w[0].len() == w[1].len());
+        let mut all = numbers.iter().flatten().chain(&calibration.shared);
+        if numbers.len() != self.primitives.len() || !equal || !all.all(|v| v.is_finite()) {
+            return Err(Error::invalid(format!(
+                "a calibration of `{}` needs equally many finite numbers of each of the {} primitives",
+                calibration.recogniser,
+                self.primitives.len()
+            )));
+        }
+        self.calibrations
+            .retain(|c| c.recogniser != calibration.recogniser);
+        self.calibrations.push(calibration);
+        self.calibrations
+            .sort_by(|a, b| a.recogniser.cmp(&b.recogniser));
+        Ok(self)
+    }
+
+    /// What recognisers learned of it, in the order of their names.
+    pub fn calibrations(&self) -> &[Calibration] {
+        &self.calibrations
+    }
+
+    /// What the recogniser of this name learned of it.
+    pub fn calibration(&self, recogniser: &str) -> Option<&Calibration> {
+        self.calibrations
+            .iter()
+            .find(|c| c.recogniser == recogniser)
     }
 
     /// The body that all exemplars move.
