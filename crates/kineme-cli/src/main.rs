@@ -8,6 +8,7 @@ mod derive;
 mod describe;
 mod draft;
 mod edit;
+mod encode;
 mod failure;
 mod findings;
 mod info;
@@ -69,6 +70,7 @@ fn run(cli: &Cli) -> Result<u8, Failure> {
         Command::Show(args) => show::run(args, &cli.global),
         Command::Edit(args) => edit::run(args, &cli.global),
         Command::Synthesize(args) => synthesize::run(args, &cli.global),
+        Command::Encode(args) => encode::run(args, &cli.global),
         Command::Demo(args) => demo::run(args, &cli.global),
     }
 }

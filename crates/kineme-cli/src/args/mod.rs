@@ -1,7 +1,9 @@
 //! The command line, as clap reads it and as `--help` teaches it.
 
+mod encode;
 mod model;
 
+pub use encode::{EncodeArgs, EncodeMethod};
 pub use model::{
     ChoreographArgs, EditArgs, InterpolationName, LearnArgs, Merging, ModelArgs, Parameters,
     Renaming, ShowArgs, SynthesizeArgs, Target,
@@ -23,6 +25,7 @@ Examples:
   kineme show moves.kineme                        what the primitives are, and how good
   kineme synthesize moves.kineme jab -o jab.bvh --reach right_hand=0.5,-0.35,0.1
                                                   a motion of one, aimed
+  kineme encode moves.kineme take.bvh             which of them a motion is, by its hands
   kineme convert take.amc take.bvh                another format, nothing lost
 
 Exit codes: 0 done, 1 the work failed, 2 usage, 3 an input cannot be read.";
@@ -69,6 +72,7 @@ pub enum Command {
     Show(ShowArgs),
     Edit(Box<EditArgs>),
     Synthesize(Box<SynthesizeArgs>),
+    Encode(Box<EncodeArgs>),
     Demo(DemoArgs),
 }
 
