@@ -61,7 +61,7 @@ fn what_a_primitive_makes_is_that_primitive_from_beginning_to_end() {
                 assert!(span.margin > 0.0);
             }
             let rmse = encoding.rmse_m.expect("a distance");
-            assert!(rmse < 0.06, "{name} {height}: {rmse} m");
+            assert!(rmse < 0.08, "{name} {height}: {rmse} m");
         }
     }
 }
@@ -97,7 +97,7 @@ fn the_size_of_the_observed_body_does_not_matter() {
         let seen = changed(&paths(&made("hook", 0.5)), |_, _, p| Some(scale * p));
         let encoding = encoder.encode("hook", &seen).expect("an encoding");
         assert_eq!(label(&encoding), Some("hook"));
-        assert!(encoding.rmse_m.expect("a distance") < 0.06);
+        assert!(encoding.rmse_m.expect("a distance") < 0.08);
     }
 }
 

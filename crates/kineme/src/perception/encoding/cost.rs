@@ -7,6 +7,8 @@ use super::paths::EffectorPaths;
 use super::rows::Row;
 use super::settings::{EncodingSettings, SAMPLES};
 
+/// Instants of a horizon that are compared, at most.
+const LOOKS: usize = 3;
 /// Cells worked on together.
 pub(super) const LANES: usize = 8;
 
@@ -77,9 +79,12 @@ pub(super) fn blocks(instants: &Instants, settings: &EncodingSettings) -> Vec<Bl
 impl Block {
     /// The block that begins at the first of `instants` and lasts for `span` of them.
     pub fn new(instants: &[Vec<Option<Vector3<f64>>>], span: usize) -> Self {
+        let horizon = instants.len().saturating_sub(1);
+        // Neighbouring instants say much the same: every second of a horizon of six is looked at, its end among them.
+        let stride = horizon.div_ceil(LOOKS).max(1);
         let mut sights = Vec::new();
-        for (sample, points) in instants.iter().enumerate().skip(1) {
-            for (effector, point) in points.iter().enumerate() {
+        for sample in (1..=horizon).rev().step_by(stride) {
+            for (effector, point) in instants[sample].iter().enumerate() {
                 let Some(point) = *point else { continue };
                 sights.push(Sight {
                     effector,
@@ -226,7 +231,7 @@ fn add(
     let mut gap: Lane = [0.0; LANES];
     let mut size: Lane = [0.0; LANES];
     let mut predicted: [Lane; 3] = [[0.0; LANES]; 3];
-    for axis in 0..3 {
+    for (axis, predicted) in predicted.iter_mut().enumerate() {
         let track = &row.track(sight.effector, axis)[cell..];
         let (here, there) = (&track[..LANES], &track[whole..whole + LANES + 1]);
         let seen = sight.point[axis];
@@ -234,7 +239,7 @@ fn add(
             let p = there[l] + rest * (there[l + 1] - there[l]);
             gap[l] += (seen - p) * (seen - p);
             let d = p - here[l];
-            predicted[axis][l] = d;
+            predicted[l] = d;
             size[l] += d * d;
         }
     }
@@ -259,5 +264,56 @@ fn add(
     }
     for l in 0..LANES {
         sum[l] += displacement * missed[l].sqrt() + direction * turned[l].sqrt();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rows::Row;
+    use super::*;
+
+    #[test]
+    fn many_cells_at_once_cost_what_each_costs_alone() {
+        let s = EncodingSettings::default();
+        let wave = |t: f64, k: usize| {
+            Vector3::new(
+                (1.3 * t + k as f64).sin(),
+                (0.7 * t).cos(),
+                0.4 * (2.1 * t).sin(),
+            )
+        };
+        for (cyclic, cells) in [(false, 53), (true, 31)] {
+            let place = |cell: usize, e: usize| 0.5 * wave(0.07 * cell as f64, e);
+            let row = Row::made(cyclic, cells, 2, &s, place);
+            let instants: Vec<Vec<Option<Vector3<f64>>>> = (0..=s.horizon())
+                .map(|k| {
+                    (0..2)
+                        .map(|e| {
+                            (e == 0 || k != 2).then(|| 0.4 * wave(0.5 + 0.1 * k as f64, e + 2))
+                        })
+                        .collect()
+                })
+                .collect();
+            let block = Block::new(&instants, SAMPLES);
+            let mut costs = Vec::new();
+            block.costs(&row, 3..cells, 0.45, &s, &mut costs);
+            let width = costs.len() / s.rates.len();
+            for (r, &rate) in s.rates.iter().enumerate() {
+                for cell in 3..cells {
+                    let at = |e: usize, sample: usize| {
+                        let ahead = s.cells(rate, sample);
+                        let whole = ahead.floor() as usize;
+                        let (a, b) = (row.after(cell, whole), row.after(cell, whole + 1));
+                        0.45 * place(a, e).lerp(&place(b, e), ahead - whole as f64)
+                    };
+                    let alone = block.cost(0.45, &s, at);
+                    let together = f64::from(costs[r * width + cell - 3]);
+                    assert!(
+                        (alone - together).abs() < 1e-5,
+                        "{rate} {cell}: {alone} {together}"
+                    );
+                }
+            }
+        }
     }
 }

@@ -196,7 +196,8 @@ impl<'a> Encoder<'a> {
         }
         let clip = self.is_clip(seen.duration_secs);
         let legs = tracker.path(clip);
-        let mut stretches = self.stretches(seen, &legs);
+        let whole = clip.then(|| self.costs(seen, 0..seen.blocks.len(), Ends::Whole));
+        let mut stretches = self.stretches(seen, &legs, whole.as_deref());
         let all: f64 = seen.blocks.iter().map(|b| b.weight).sum();
         let blind = seen.blocks.iter().all(Block::is_blind);
         if blind {
@@ -213,10 +214,7 @@ impl<'a> Encoder<'a> {
                 stretches,
             };
         }
-        let costs = match clip {
-            true => self.costs(seen, 0..seen.blocks.len(), Ends::Whole),
-            false => weighted(&stretches, seen, primitives),
-        };
+        let costs = whole.unwrap_or_else(|| weighted(&stretches, seen, primitives));
         let evidence = Evidence {
             background: background(&seen.instants, &seen.blocks, self.usual_unit_m(seen), s),
             costs,
@@ -286,8 +284,9 @@ impl<'a> Encoder<'a> {
         median(&units).unwrap_or(1.0)
     }
 
-    /// The legs of a path that are one stroke, one rest, one unknown movement.
-    fn stretches(&self, seen: &Seen, legs: &[Leg]) -> Vec<Stretch> {
+    /// The legs of a path that are one stroke, one rest, one unknown movement; `whole` is what a clip costs that has no
+    /// parts.
+    fn stretches(&self, seen: &Seen, legs: &[Leg], whole: Option<&[f64]>) -> Vec<Stretch> {
         let mut stretches: Vec<Stretch> = Vec::new();
         for (b, leg) in legs.iter().enumerate() {
             let (primitive, rest, begun) = match *leg {
@@ -306,6 +305,10 @@ impl<'a> Encoder<'a> {
                     costs: Vec::new(),
                 }),
             }
+        }
+        if let (Some(whole), [only]) = (whole, stretches.as_mut_slice()) {
+            only.costs = whole.to_vec();
+            return stretches;
         }
         for stretch in &mut stretches {
             stretch.costs = self.costs(seen, stretch.blocks.clone(), Ends::Free);

@@ -7,7 +7,7 @@ mod encoded;
 mod encoder;
 mod extrapolation;
 mod heading;
-mod lab;
+
 mod listener;
 mod literal;
 mod literally;

@@ -17,11 +17,13 @@ use crate::primitive::Vocabulary;
 /// Scores that are weighed.
 pub const SCORES: usize = 5;
 /// Exemplars that are encoded to fit it, at most.
-const MOST_CASES: usize = 160;
+const MOST_CASES: usize = 120;
 /// Cases on either side without which nothing is fitted.
 const LEAST_CASES: usize = 8;
 /// The share of the known that limits admit.
 const ADMITTED: f64 = 0.95;
+/// The share of the known that is kept, should even odds keep less: people differ more than exemplars tell.
+const KEPT: f64 = 0.9;
 /// The weight of a limit alone, where nothing can be fitted: probability 0.9 at a cost of 0.7 of the limit.
 const LIMIT_WEIGHT: f64 = 6.0;
 /// The cost that bounds a primitive where no exemplar can be held against another, in units.
@@ -88,6 +90,10 @@ impl Evidence {
     }
 }
 
+fn product(weights: &[f64; SCORES], scores: &[f64; SCORES]) -> f64 {
+    weights.iter().zip(scores).map(|(w, s)| w * s).sum()
+}
+
 /// A score that speaks for the known has weight of this sign.
 const SIGNS: [f64; SCORES] = [-1.0, 1.0, 1.0, 1.0, 1.0];
 
@@ -97,13 +103,7 @@ impl Rejection {
         let Some(scores) = evidence.scores(&self.limits) else {
             return 1.0;
         };
-        let odds: f64 = self.bias
-            + self
-                .weights
-                .iter()
-                .zip(scores)
-                .map(|(w, s)| w * s)
-                .sum::<f64>();
+        let odds = self.bias + product(&self.weights, &scores);
         1.0 / (1.0 + odds.exp())
     }
 
@@ -127,7 +127,7 @@ impl Rejection {
         Ok(self)
     }
 
-    /// Fits to the exemplars of a vocabulary, at most 160 of them, evenly chosen. Who performed an exemplar is not known;
+    /// Fits to the exemplars of a vocabulary, at most 120 of them, evenly chosen. Who performed an exemplar is not known;
     /// the nearer half of its primitive's others stands for the same person and is left out.
     pub(super) fn fit(vocabulary: &Vocabulary, rows: &[Row], s: &EncodingSettings) -> Result<Self> {
         let primitives = vocabulary.primitives().len();
@@ -146,9 +146,10 @@ impl Rejection {
         let limits: Vec<Option<f64>> = own.iter().map(|costs| quantile(costs, ADMITTED)).collect();
         let seen: Vec<f64> = limits.iter().flatten().copied().collect();
         let usual = median(&seen).unwrap_or(PLAIN_LIMIT).max(1e-3);
+        // Few exemplars tell a quantile badly: half-way to the usual one.
         let limits: Vec<f64> = limits
             .iter()
-            .map(|l| l.map_or(usual, |l| l.max(1e-3)))
+            .map(|l| l.map_or(usual, |l| (l.max(1e-3) * usual).sqrt()))
             .collect();
         let limit = quantile(&own.concat(), ADMITTED).unwrap_or(usual).max(1e-3);
         let scores = |evidence: Option<&Evidence>| evidence.and_then(|e| e.scores(&limits));
@@ -161,7 +162,12 @@ impl Rejection {
             .filter_map(|c| scores(c.unknown.as_ref()))
             .collect();
         let (weights, bias) = match known.len().min(unknown.len()) >= LEAST_CASES {
-            true => logistic(&known, &unknown),
+            true => {
+                let (weights, bias) = logistic(&known, &unknown);
+                let odds = known.iter().map(|s| bias + product(&weights, s));
+                let least = quantile(&odds.collect::<Vec<_>>(), 1.0 - KEPT).unwrap_or(0.0);
+                (weights, bias - least.min(0.0))
+            }
             false => ([0.0, 0.0, 0.0, 0.0, LIMIT_WEIGHT], 0.0),
         };
         Ok(Self {

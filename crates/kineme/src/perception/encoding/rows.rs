@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::paths::EffectorPaths;
@@ -109,6 +110,27 @@ pub(super) fn rows(vocabulary: &Vocabulary, settings: &EncodingSettings) -> Resu
 }
 
 impl Row {
+    /// A row of given places, for tests.
+    #[cfg(test)]
+    pub fn made(
+        cyclic: bool,
+        cells: usize,
+        effectors: usize,
+        settings: &EncodingSettings,
+        place: impl Fn(usize, usize) -> Vector3<f64>,
+    ) -> Self {
+        let padded = cells + settings.padding();
+        Self {
+            primitive: 0,
+            exemplar: 0,
+            cyclic,
+            phases: (0..cells).map(|c| c as f64 / cells as f64).collect(),
+            unit_m: 1.0,
+            tracks: tracks(cyclic, cells, effectors, padded, place),
+            padded,
+        }
+    }
+
     fn of(
         primitive: &Primitive,
         (index, exemplar): (usize, usize),
@@ -119,18 +141,16 @@ impl Row {
         let motion = performed(primitive, exemplar, &phases, settings.cell_secs())?;
         let paths = EffectorPaths::of_motion(&motion, &settings.effectors, settings.heading_secs)?;
         let unit_m = paths.reach_m().unwrap_or(1.0) / REACH_UNITS;
-        let count = phases.len();
-        let padded = count + settings.padding();
-        let mut tracks = Vec::with_capacity(3 * settings.effectors.len() * padded);
-        for effector in 0..settings.effectors.len() {
-            for axis in 0..3 {
-                tracks.extend((0..padded).map(|c| {
-                    let c = if cyclic { c % count } else { c.min(count - 1) };
-                    // Forward kinematics sees every effector.
-                    paths.at(c)[effector].map_or(0.0, |p| p[axis] / unit_m) as f32
-                }));
-            }
-        }
+        let padded = phases.len() + settings.padding();
+        // Forward kinematics sees every effector.
+        let place = |c: usize, e: usize| paths.at(c)[e].unwrap_or_default() / unit_m;
+        let tracks = tracks(
+            cyclic,
+            phases.len(),
+            settings.effectors.len(),
+            padded,
+            place,
+        );
         Ok(Self {
             primitive: index,
             exemplar,
@@ -141,6 +161,26 @@ impl Row {
             padded,
         })
     }
+}
+
+/// Places (in units, of a cell and an effector) as tracks, held or repeated beyond the end.
+fn tracks(
+    cyclic: bool,
+    count: usize,
+    effectors: usize,
+    padded: usize,
+    place: impl Fn(usize, usize) -> Vector3<f64>,
+) -> Vec<f32> {
+    let mut tracks = Vec::with_capacity(3 * effectors * padded);
+    for effector in 0..effectors {
+        for axis in 0..3 {
+            tracks.extend((0..padded).map(|c| {
+                let c = if cyclic { c % count } else { c.min(count - 1) };
+                place(c, effector)[axis] as f32
+            }));
+        }
+    }
+    tracks
 }
 
 /// The phases of a registered exemplar at even times, from 0 on; of a cycle, one round without its end.

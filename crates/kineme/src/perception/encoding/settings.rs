@@ -117,7 +117,7 @@ impl Default for EncodingSettings {
             entry_cost: 0.5,
             entry_phase: 0.3,
             end_cost: 0.5,
-            switch_cost: 1.0,
+            switch_cost: 0.3,
             temperature: 0.05,
             row_beam: 1.0,
             beam: 1000,
