@@ -161,17 +161,24 @@ impl Rejection {
             .iter()
             .filter_map(|c| scores(c.unknown.as_ref()))
             .collect();
+        let temperature = temperature(&cases);
         let (weights, bias) = match known.len().min(unknown.len()) >= LEAST_CASES {
             true => {
                 let (weights, bias) = logistic(&known, &unknown);
-                let odds = known.iter().map(|s| bias + product(&weights, s));
+                // The best primitive must be likelier than none, however it shares with others.
+                let odds = cases.iter().filter_map(|c| {
+                    let evidence = c.known.as_ref()?;
+                    let all = shares(&evidence.costs, temperature);
+                    let best = all[evidence.best()?].max(1e-12);
+                    Some(bias + product(&weights, &evidence.scores(&limits)?) + best.ln())
+                });
                 let least = quantile(&odds.collect::<Vec<_>>(), 1.0 - KEPT).unwrap_or(0.0);
                 (weights, bias - least.min(0.0))
             }
             false => ([0.0, 0.0, 0.0, 0.0, LIMIT_WEIGHT], 0.0),
         };
         Ok(Self {
-            temperature: temperature(&cases),
+            temperature,
             limits,
             limit,
             weights,
