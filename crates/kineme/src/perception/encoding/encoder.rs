@@ -201,7 +201,7 @@ impl<'a> Encoder<'a> {
         let all: f64 = seen.blocks.iter().map(|b| b.weight).sum();
         let blind = seen.blocks.iter().all(Block::is_blind);
         if blind {
-            // Nothing was seen to move, or nothing was seen.
+            // Of what was not seen nothing is known.
             return Verdict {
                 posterior: Posterior {
                     primitives: vec![0.0; primitives],
