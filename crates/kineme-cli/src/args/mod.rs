@@ -4,6 +4,10 @@ mod evaluate;
 mod model;
 
 pub use evaluate::{EvaluateArgs, MethodName};
+mod encode;
+mod model;
+
+pub use encode::{EncodeArgs, EncodeMethod};
 pub use model::{
     ChoreographArgs, EditArgs, InterpolationName, LearnArgs, Merging, ModelArgs, Parameters,
     Renaming, ShowArgs, SynthesizeArgs, Target,
@@ -26,6 +30,7 @@ Examples:
   kineme synthesize moves.kineme jab -o jab.bvh --reach right_hand=0.5,-0.35,0.1
                                                   a motion of one, aimed
   kineme evaluate moves.kineme tests.csv          how well its movements are recognised
+  kineme encode moves.kineme take.bvh             which of them a motion is, by its hands
   kineme convert take.amc take.bvh                another format, nothing lost
 
 Exit codes: 0 done, 1 the work failed, 2 usage, 3 an input cannot be read.";
@@ -73,6 +78,7 @@ pub enum Command {
     Edit(Box<EditArgs>),
     Synthesize(Box<SynthesizeArgs>),
     Evaluate(Box<EvaluateArgs>),
+    Encode(Box<EncodeArgs>),
     Demo(DemoArgs),
 }
 
