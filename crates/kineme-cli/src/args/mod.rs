@@ -1,13 +1,11 @@
 //! The command line, as clap reads it and as `--help` teaches it.
 
+mod encode;
 mod evaluate;
 mod model;
 
-pub use evaluate::{EvaluateArgs, MethodName};
-mod encode;
-mod model;
-
 pub use encode::{EncodeArgs, EncodeMethod};
+pub use evaluate::{EvaluateArgs, MethodName};
 pub use model::{
     ChoreographArgs, EditArgs, InterpolationName, LearnArgs, Merging, ModelArgs, Parameters,
     Renaming, ShowArgs, SynthesizeArgs, Target,
