@@ -1,7 +1,7 @@
 //! The recognisers of the command line: made here for every verb.
 
 use kineme::Vocabulary;
-use kineme::perception::{Frame, FrameSettings, Paper, PaperSettings};
+use kineme::perception::{Filter, FilterSettings, Frame, FrameSettings, Paper, PaperSettings};
 use kineme::primitive::Recogniser;
 
 use crate::args::{ClassifierArgs, ClassifierName};
@@ -16,7 +16,12 @@ pub fn classifier<'v>(
     refuse_others(name, args)?;
     Ok(match name {
         ClassifierName::Filter => {
-            return Err(Failure::failed("the filter is not there yet"));
+            let defaults = FilterSettings::default();
+            let settings = FilterSettings {
+                lag_secs: args.lag.unwrap_or(defaults.lag_secs),
+                ..defaults
+            };
+            Box::new(Filter::new(vocabulary, &settings)?)
         }
         ClassifierName::Frame => {
             let defaults = FrameSettings::default();

@@ -26,7 +26,8 @@ pub struct ClassifierArgs {
     /// frame, paper: frames from one of them to the next [default: frame 4, paper 1]
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub stride: Option<u16>,
-    /// filter: seconds by which answers to frames may lag, so that what follows speaks for them, too [default: 0]
+    /// filter: answers to frames are about the moment so many seconds before, so that what followed speaks for it, too;
+    /// `about` is its time [default: 0]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = lag)]
     pub lag: Option<f64>,
 }
@@ -58,9 +59,9 @@ Examples:
   kineme classify moves.kineme take.bvh --method paper
                                                      the method as published, each primitive by itself
 A stream, of the vocabulary's body (`kineme convert take.bvh - --body ares --to csv` writes one):
-  time,root_x,root_y,root_z,root_yaw,left_elbow,...
-  0.00,0,0,0.95,0,1.12,...
-  0.01,,,,,,...
+  time,root_x,root_y,root_z,root_yaw,pelvis_x,pelvis_y,...
+  0.00,0,0,0.95,0,0.1,0.02,...
+  0.01,,,,,,,...
 How well it does on your motions: `kineme evaluate`.")]
 pub struct ClassifyArgs {
     /// The vocabulary; - is stdin

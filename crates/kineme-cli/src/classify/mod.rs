@@ -40,7 +40,11 @@ pub fn run(args: &ClassifyArgs, global: &Global) -> Result<u8, Failure> {
     let vocabulary = read(&args.vocabulary)?;
     check_names(&vocabulary, args)?;
     let recogniser = classifier(args.method, &args.classifier, &vocabulary)?;
-    let teller = Teller::new(&*recogniser, global.json);
+    let teller = Teller::new(
+        &*recogniser,
+        args.classifier.lag.unwrap_or(0.0),
+        global.json,
+    );
     if streamed {
         return stream::run(&*recogniser, &teller);
     }
@@ -97,7 +101,7 @@ fn answer(
         is_known = readings.iter().any(|r| r.posterior.best().is_some());
         text.push_str(&teller.frames_head(&motion));
         for (f, reading) in readings.iter().enumerate() {
-            text.push_str(&teller.frame(&motion, seen.at(f).secs, reading)?);
+            text.push_str(&teller.frame(&motion, (0.0, seen.at(f).secs), reading)?);
         }
         text.push_str(teller.frames_end());
     } else {
@@ -137,8 +141,8 @@ fn hint(answered: &[Answered], args: &ClassifyArgs) {
     let strange = answered.iter().filter(|a| !a.is_known).count();
     if strange > 0 {
         let which = match (strange, answered.len()) {
-            (1, 1) => "it is none of the primitives".into(),
-            (n, all) => format!("{n} of {all} motions are none of the primitives"),
+            (1, 1) => "it is at rest or none of the primitives".into(),
+            (n, all) => format!("{n} of {all} motions are at rest or none of the primitives"),
         };
         complain(&format!(
             "note: {which}; `kineme show {shown}` lists these, `kineme edit {shown} -o OUT --add MANIFEST.csv` gives them \

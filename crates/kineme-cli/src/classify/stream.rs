@@ -27,9 +27,11 @@ pub(super) fn run(recogniser: &dyn Recogniser, teller: &Teller) -> Result<u8, Fa
     if !offer(teller.frames_columns().as_bytes())? {
         return Ok(0);
     }
+    let mut since = None;
     while let Some(seen) = rows.next_row()? {
         let reading = listener.hear(&seen)?;
-        if !offer(teller.frame(NAME, seen.secs, &reading)?.as_bytes())? {
+        let times = (*since.get_or_insert(seen.secs), seen.secs);
+        if !offer(teller.frame(NAME, times, &reading)?.as_bytes())? {
             break;
         }
     }

@@ -45,6 +45,9 @@ struct SpanLine<'a> {
 struct FrameLine<'a> {
     motion: &'a str,
     time: f64,
+    /// The moment that the answer is of, where answers lag.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    about: Option<f64>,
     label: Option<&'a str>,
     #[serde(flatten)]
     probabilities: Probabilities,
@@ -69,12 +72,14 @@ pub(super) struct Teller<'v> {
     is_binary: bool,
     /// Whether scripts read it.
     pub json: bool,
+    /// Seconds by which answers to frames lag.
+    lag_secs: f64,
     /// The longest name of an answer, letters.
     width: usize,
 }
 
 impl<'v> Teller<'v> {
-    pub fn new(recogniser: &'v dyn Recogniser, json: bool) -> Self {
+    pub fn new(recogniser: &'v dyn Recogniser, lag_secs: f64, json: bool) -> Self {
         let vocabulary = recogniser.vocabulary();
         let names = vocabulary.primitives().iter().map(Primitive::name);
         let widths = names.map(|name| name.chars().count());
@@ -82,6 +87,7 @@ impl<'v> Teller<'v> {
             vocabulary,
             is_binary: recogniser.is_binary(),
             json,
+            lag_secs,
             width: widths.max().unwrap_or(0).max("movement".len()),
         }
     }
@@ -148,16 +154,26 @@ impl<'v> Teller<'v> {
             return String::new();
         }
         let movement = format!("{:width$}", "movement", width = self.width);
-        format!("     time  {movement}  probability  phase  novelty  parameters\n")
+        let about = match self.lag_secs > 0.0 {
+            true => "      about",
+            false => "",
+        };
+        format!("     time{about}  {movement}  probability  phase  novelty  parameters\n")
     }
 
-    /// A frame's line.
-    pub fn frame(&self, motion: &str, secs: f64, reading: &Reading) -> Result<String, Failure> {
+    /// The line of a frame at `secs` of what began at `since`.
+    pub fn frame(
+        &self,
+        motion: &str,
+        (since, secs): (f64, f64),
+        reading: &Reading,
+    ) -> Result<String, Failure> {
+        let about = (self.lag_secs > 0.0).then(|| (secs - self.lag_secs).max(since));
         let best = reading.posterior.best();
         let place = reading.place.as_ref();
         let place = place.filter(|place| Some(place.primitive) == best);
         if !self.json {
-            return Ok(self.frame_text(secs, reading, place));
+            return Ok(self.frame_text(secs, about, reading, place));
         }
         let deviation = |place: &Place| {
             let axes = self.primitive(place.primitive).parameters().axes().iter();
@@ -167,6 +183,7 @@ impl<'v> Teller<'v> {
         line(&FrameLine {
             motion,
             time: secs,
+            about,
             label: best.map(|k| self.name(k)),
             probabilities: self.probabilities(&reading.posterior),
             phase: place.map(|p| p.phase),
@@ -177,14 +194,21 @@ impl<'v> Teller<'v> {
         })
     }
 
-    fn frame_text(&self, secs: f64, reading: &Reading, place: Option<&Place>) -> String {
+    fn frame_text(
+        &self,
+        secs: f64,
+        about: Option<f64>,
+        reading: &Reading,
+        place: Option<&Place>,
+    ) -> String {
+        let about = about.map_or_else(String::new, |about| format!("  {about:9.3}"));
         let (answer, probability) = self.answer(&reading.posterior);
         let phase = place.map_or("-".into(), |p| format!("{:.2}", p.phase));
         let values = place.and_then(|p| self.parameters(p.primitive, &p.parameters));
         let parameters = place.zip(values);
         let named = parameters.map_or_else(String::new, |(p, v)| self.named(p.primitive, &v));
         let line = format!(
-            "{secs:9.3}  {answer:width$}  {probability:11.2}  {phase:>5}  {:7.2}  {named}",
+            "{secs:9.3}{about}  {answer:width$}  {probability:11.2}  {phase:>5}  {:7.2}  {named}",
             reading.novelty,
             width = self.width
         );
