@@ -8,6 +8,7 @@ mod derive;
 mod describe;
 mod draft;
 mod edit;
+mod encode;
 mod evaluate;
 mod failure;
 mod findings;
@@ -71,6 +72,7 @@ fn run(cli: &Cli) -> Result<u8, Failure> {
         Command::Edit(args) => edit::run(args, &cli.global),
         Command::Synthesize(args) => synthesize::run(args, &cli.global),
         Command::Evaluate(args) => evaluate::run(args, &cli.global),
+        Command::Encode(args) => encode::run(args, &cli.global),
         Command::Demo(args) => demo::run(args, &cli.global),
     }
 }

@@ -1,8 +1,10 @@
 //! The command line, as clap reads it and as `--help` teaches it.
 
+mod encode;
 mod evaluate;
 mod model;
 
+pub use encode::{EncodeArgs, EncodeMethod};
 pub use evaluate::{EvaluateArgs, MethodName};
 pub use model::{
     ChoreographArgs, EditArgs, InterpolationName, LearnArgs, Merging, ModelArgs, Parameters,
@@ -26,6 +28,7 @@ Examples:
   kineme synthesize moves.kineme jab -o jab.bvh --reach right_hand=0.5,-0.35,0.1
                                                   a motion of one, aimed
   kineme evaluate moves.kineme tests.csv          how well its movements are recognised
+  kineme encode moves.kineme take.bvh             which of them a motion is, by its hands
   kineme convert take.amc take.bvh                another format, nothing lost
 
 Exit codes: 0 done, 1 the work failed, 2 usage, 3 an input cannot be read.";
@@ -73,6 +76,7 @@ pub enum Command {
     Edit(Box<EditArgs>),
     Synthesize(Box<SynthesizeArgs>),
     Evaluate(Box<EvaluateArgs>),
+    Encode(Box<EncodeArgs>),
     Demo(DemoArgs),
 }
 

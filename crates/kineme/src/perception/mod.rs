@@ -1,6 +1,7 @@
 //! Floor 5: recognising movement with the same vocabulary that makes it (paper, section V).
 
 mod checked;
+pub mod encoding;
 mod filter;
 mod frame;
 mod paper;

@@ -1,0 +1,42 @@
+//! Extrapolation: predictors that know no primitive. A primitive that predicts no better than they do knows nothing of
+//! the movement.
+
+use nalgebra::Vector3;
+
+use super::cost::{Block, Instants};
+use super::settings::{EncodingSettings, SAMPLES};
+
+/// The mean cost of the best extrapolation of each block, in units of `unit_m`: the posture is held, goes on at its
+/// velocity, or comes to rest within the horizon with the least jerk (Flash and Hogan 1985).
+pub(super) fn background(
+    instants: &Instants,
+    blocks: &[Block],
+    unit_m: f64,
+    s: &EncodingSettings,
+) -> f64 {
+    let (mut sum, mut all) = (0.0, 0.0);
+    for (b, block) in blocks.iter().enumerate() {
+        let first = b * SAMPLES;
+        let start = |e: usize| instants[first][e].unwrap_or_default();
+        let velocity = |e: usize| -> Vector3<f64> {
+            let before = first.checked_sub(1).and_then(|f| instants[f][e]);
+            let here = instants[first][e];
+            before.zip(here).map_or(Vector3::zeros(), |(a, b)| b - a)
+        };
+        let horizon = s.horizon() as f64;
+        let held = block.cost(unit_m, s, |e, _| start(e));
+        let straight = block.cost(unit_m, s, |e, k| start(e) + k as f64 * velocity(e));
+        let stopping = block.cost(unit_m, s, |e, k| {
+            start(e) + horizon * stopped((k as f64 / horizon).min(1.0)) * velocity(e)
+        });
+        sum += block.weight * held.min(straight).min(stopping);
+        all += block.weight;
+    }
+    sum / all.max(1e-9)
+}
+
+/// How far one comes, at unit speed, whose velocity dies down as 1 - 10 u^3 + 15 u^4 - 6 u^5.
+fn stopped(u: f64) -> f64 {
+    let u4 = u.powi(4);
+    u - 2.5 * u4 + 3.0 * u4 * u - u4 * u * u
+}

@@ -1,0 +1,25 @@
+//! Trajectory encoding (paper, section V-B): movement recognised from the paths of hands, feet or head alone, and said
+//! again in the joints of the vocabulary's body.
+
+mod chains;
+mod cost;
+mod encoded;
+mod encoder;
+mod extrapolation;
+mod heading;
+
+mod listener;
+mod literal;
+mod literally;
+mod paths;
+mod rejection;
+mod result;
+mod rows;
+mod settings;
+mod track;
+
+pub use encoder::Encoder;
+pub use paths::EffectorPaths;
+pub use rejection::{Rejection, SCORES};
+pub use result::{EncodedSpan, Encoding};
+pub use settings::{EncodingMethod, EncodingSettings, Extent, Matching};
