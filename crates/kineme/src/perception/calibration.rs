@@ -1,6 +1,7 @@
 //! [`calibrated`]: what recognisers learn of a vocabulary by leaving exemplars out, fitted and kept with it.
 
 use super::encoding::Encoder;
+use super::filter::Filter;
 use crate::error::Result;
 use crate::primitive::{Calibration, Primitive, Vocabulary};
 
@@ -16,7 +17,7 @@ pub fn calibrated(vocabulary: Vocabulary, before: Option<&Vocabulary>) -> Result
     if vocabulary.primitives().is_empty() {
         return Ok(vocabulary);
     }
-    let mut learned = Vec::new();
+    let mut learned = vec![learn("filter", Filter::calibration, &vocabulary, before)?];
     if Encoder::can_watch(vocabulary.body()) {
         learned.push(learn("encoder", Encoder::calibration, &vocabulary, before)?);
     }
@@ -24,8 +25,8 @@ pub fn calibrated(vocabulary: Vocabulary, before: Option<&Vocabulary>) -> Result
     all.try_fold(vocabulary, Vocabulary::calibrated)
 }
 
-/// How a recogniser learns; empty rows of what is kept are of primitives that changed.
-type Learn = fn(&Vocabulary, Option<&Calibration>) -> Result<Calibration>;
+/// How a recogniser learns, with numbers of primitives that it is to keep.
+type Learn = fn(&Vocabulary, &[Option<Vec<f64>>]) -> Result<Calibration>;
 
 /// What a recogniser learns of a vocabulary beyond what it knew before.
 fn learn(
@@ -36,21 +37,17 @@ fn learn(
 ) -> Result<Calibration> {
     let known = before.and_then(|b| Some((b, b.calibration(recogniser)?)));
     let Some((before, known)) = known else {
-        return learn(vocabulary, None);
+        return learn(vocabulary, &[]);
     };
     let places = places(vocabulary, before);
-    let of = |place: &Option<usize>| place.map_or(Vec::new(), |i| known.primitives[i].clone());
-    let kept = Calibration {
-        primitives: places.iter().map(of).collect(),
-        ..known.clone()
-    };
-    let count = before.primitives().len();
-    let all_stayed = places.iter().copied().eq((0..count).map(Some))
-        && vocabulary.transitions() == before.transitions();
-    if all_stayed {
-        return Ok(kept);
+    let all = 0..before.primitives().len();
+    let all_stayed = places.iter().copied().eq(all.map(Some));
+    if all_stayed && vocabulary.transitions() == before.transitions() {
+        return Ok(known.clone());
     }
-    learn(vocabulary, Some(&kept))
+    let numbers = |place: &Option<usize>| place.map(|i| known.primitives[i].clone());
+    let kept: Vec<Option<Vec<f64>>> = places.iter().map(numbers).collect();
+    learn(vocabulary, &kept)
 }
 
 /// Where each primitive was before, under its own name if it can be; `None` for those that changed.

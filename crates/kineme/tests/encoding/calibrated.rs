@@ -105,16 +105,41 @@ fn an_edit_keeps_the_numbers_of_what_did_not_change() {
     let copy = |i: usize| all[i].clone();
     // The primitives after the edit, and where each was before; `None` where it changed.
     let cases = [
-        ("nothing", before.primitives().to_vec(), vec![Some(0), Some(1), Some(2), Some(3)]),
-        ("renamed", vec![copy(0), copy(1), renamed, copy(3)], vec![Some(0), Some(1), Some(2), Some(3)]),
         (
-            "names change places",
-            vec![all[0].clone().renamed(NAMES[1]), all[1].clone().renamed(NAMES[0]), copy(2), copy(3)],
+            "nothing",
+            before.primitives().to_vec(),
             vec![Some(0), Some(1), Some(2), Some(3)],
         ),
-        ("order", vec![copy(3), copy(0), copy(1), copy(2)], vec![Some(3), Some(0), Some(1), Some(2)]),
-        ("removed", vec![copy(0), copy(2), copy(3)], vec![Some(0), Some(2), Some(3)]),
-        ("changed", vec![copy(0), changed, copy(2), copy(3)], vec![Some(0), None, Some(2), Some(3)]),
+        (
+            "renamed",
+            vec![copy(0), copy(1), renamed, copy(3)],
+            vec![Some(0), Some(1), Some(2), Some(3)],
+        ),
+        (
+            "names change places",
+            vec![
+                all[0].clone().renamed(NAMES[1]),
+                all[1].clone().renamed(NAMES[0]),
+                copy(2),
+                copy(3),
+            ],
+            vec![Some(0), Some(1), Some(2), Some(3)],
+        ),
+        (
+            "order",
+            vec![copy(3), copy(0), copy(1), copy(2)],
+            vec![Some(3), Some(0), Some(1), Some(2)],
+        ),
+        (
+            "removed",
+            vec![copy(0), copy(2), copy(3)],
+            vec![Some(0), Some(2), Some(3)],
+        ),
+        (
+            "changed",
+            vec![copy(0), changed, copy(2), copy(3)],
+            vec![Some(0), None, Some(2), Some(3)],
+        ),
     ];
     for (what, primitives, places) in cases {
         let stayed = places.iter().copied().eq((0..all.len()).map(Some));
@@ -172,7 +197,10 @@ fn a_calibration_of_another_kind_is_refused_by_the_encoder() {
         },
     ];
     for wrong in wrong {
-        let vocabulary = vocabulary().clone().calibrated(wrong).expect("finite numbers");
+        let vocabulary = vocabulary()
+            .clone()
+            .calibrated(wrong)
+            .expect("finite numbers");
         assert!(Encoder::new(&vocabulary, &EncodingSettings::default()).is_err());
         // To calibrate it again is the way out.
         let again = calibrated(of(vocabulary.primitives()[1..].to_vec()), Some(&vocabulary));

@@ -20,19 +20,19 @@ impl Encoder<'_> {
     }
 
     /// What an encoder of the default settings learns of a vocabulary: of each primitive its limit, and of the whole
-    /// what [`Rejection`] holds besides. Limits that `kept` has, one number a primitive, are not fitted again; rows of
-    /// other lengths are of primitives that changed.
+    /// what [`Rejection`] holds besides; for [`Vocabulary::calibrated`]. Primitives with a limit in `kept` (in the order
+    /// of the vocabulary) keep it.
     ///
     /// # Errors
     /// When the vocabulary has no primitive, or its body is none that [`Self::can_watch`].
-    pub fn calibration(vocabulary: &Vocabulary, kept: Option<&Calibration>) -> Result<Calibration> {
+    pub fn calibration(vocabulary: &Vocabulary, kept: &[Option<Vec<f64>>]) -> Result<Calibration> {
         let settings = EncodingSettings::default();
         let rows = checked_rows(vocabulary, &settings)?;
-        let limit = |p: usize| match kept?.primitives.get(p)?.as_slice() {
-            [limit] if *limit > 0.0 => Some(*limit),
+        let limit = |numbers: &Option<Vec<f64>>| match numbers.as_deref() {
+            Some([limit]) if *limit > 0.0 => Some(*limit),
             _ => None,
         };
-        let limits: Vec<Option<f64>> = (0..vocabulary.primitives().len()).map(limit).collect();
+        let limits: Vec<Option<f64>> = kept.iter().map(limit).collect();
         let rejection = Rejection::fit(vocabulary, &rows, &settings, &limits)?;
         Ok(rejection.calibration())
     }
