@@ -7,7 +7,7 @@ use super::evidence::Evidence;
 use super::recogniser::Filter;
 use crate::error::Result;
 use crate::math::statistics::{mean_and_deviation, median, quantile};
-use crate::primitive::{Calibration, Observations, Vocabulary};
+use crate::primitive::{Calibration, Observations, ParameterSource, Vocabulary};
 
 /// The name under which a vocabulary keeps it.
 pub(super) const NAME: &str = "filter";
@@ -243,6 +243,12 @@ fn folds(filter: &Filter<'_>) -> Vec<(usize, usize)> {
     (0..count).map(|f| all[f * all.len() / count]).collect()
 }
 
+/// Whether the parameters of a primitive were found in what people did, not chosen.
+fn principal(vocabulary: &Vocabulary, primitive: usize) -> bool {
+    let source = vocabulary.primitives()[primitive].parameters().source();
+    matches!(source, ParameterSource::Principal { .. })
+}
+
 fn trials(filter: &Filter<'_>, folds: &[(usize, usize)], evidences: &[Evidence]) -> Vec<Trial> {
     let rows = &filter.clips.rows;
     let mut trials = Vec::new();
@@ -266,10 +272,13 @@ fn trials(filter: &Filter<'_>, folds: &[(usize, usize)], evidences: &[Evidence])
         };
         if !others.is_empty() {
             known(&left_out);
-            for r in near {
-                left_out[r] = true;
+            // A grid of parameters is nobody's: its exemplars are by one hand.
+            if principal(filter.vocabulary, k) {
+                for r in near {
+                    left_out[r] = true;
+                }
+                known(&left_out);
             }
-            known(&left_out);
         }
         let whole: Vec<bool> = rows.iter().map(|r| r.primitive == k).collect();
         trials.push(Trial {

@@ -13,7 +13,7 @@ use crate::perception::checked::{counts, not_negative, positive};
 use crate::perception::parts::same_body;
 use crate::perception::spans::spans;
 use crate::primitive::{
-    Calibration, Listener, Observations, Posterior, Recogniser, Recognition, Vocabulary,
+    Calibration, Listener, Observations, Posterior, Reading, Recogniser, Recognition, Vocabulary,
 };
 
 /// Rows in all, whatever a primitive may have.
@@ -142,7 +142,7 @@ impl<'v> Filter<'v> {
     }
 
     /// How probable each answer is for a clip as a whole, its novelty, and the parameters of the leading primitive.
-    fn judged(&self, seen: &Observations, resting: f64) -> Result<(Posterior, f64, Vec<f64>)> {
+    fn judged(&self, seen: &Observations, share: &Share) -> Result<(Posterior, f64, Vec<f64>)> {
         let evidence = self.evidence(seen)?;
         let rows = &self.clips.rows;
         let classes = classes(self, &evidence, &vec![false; rows.len()]);
@@ -155,7 +155,9 @@ impl<'v> Filter<'v> {
         let odds = self
             .learned
             .unknown(&scores(&classes, &evidence, &self.learned.limits));
-        let none = 1.0 / (1.0 + (-odds).exp());
+        // What no primitive explains from moment to moment is none of them, however alike the whole is to one.
+        let none = (1.0 / (1.0 + (-odds).exp())).max(share.unknown);
+        let resting = share.resting;
         let share = (1.0 - resting) * (1.0 - none) / sum;
         let posterior = Posterior {
             primitives: weights.iter().map(|w| w * share).collect(),
@@ -183,9 +185,39 @@ impl<'v> Filter<'v> {
         // Twice the probability where that tells, and the odds' logarithm beyond, so that no two clips look alike.
         let novelty = match odds < 0.0 {
             true => 2.0 * none,
-            false => 1.0 + odds,
+            false => (1.0 + odds).max(2.0 * none),
         };
         Ok((posterior, novelty, parameters))
+    }
+}
+
+/// A share of unknown moments decides once hardly anything else is left: people who differ from the exemplars have
+/// moments like that too.
+fn decided(share: f64) -> f64 {
+    ((share - 0.9) / 0.1).clamp(0.0, 1.0)
+}
+
+/// How much of a clip was rest, and whether what else it holds is of no known kind.
+struct Share {
+    resting: f64,
+    unknown: f64,
+}
+
+impl Share {
+    fn of(readings: &[Reading]) -> Self {
+        let sum = |of: &dyn Fn(&Posterior) -> f64| -> f64 {
+            readings.iter().map(|r| of(&r.posterior)).sum()
+        };
+        let moving = sum(&|p| 1.0 - p.rest);
+        // As far as its liveliest moment is at rest, the whole is.
+        let rests = readings.iter().map(|r| r.posterior.rest);
+        Self {
+            resting: rests.fold(1.0, f64::min),
+            unknown: match moving > 0.0 {
+                true => decided(sum(&|p| p.none) / moving),
+                false => 0.0,
+            },
+        }
     }
 }
 
@@ -215,12 +247,7 @@ impl Recogniser for Filter<'_> {
         same_body(self.vocabulary, motion.skeleton())?;
         let mut hindsight = Stream::new(self, HINDSIGHT_SECS);
         let readings = hindsight.all(seen)?;
-        // As far as its liveliest moment is at rest, the whole is.
-        let resting = readings
-            .iter()
-            .map(|r| r.posterior.rest)
-            .fold(1.0, f64::min);
-        let (posterior, novelty, parameters) = self.judged(seen, resting)?;
+        let (posterior, novelty, parameters) = self.judged(seen, &Share::of(&readings))?;
         Ok(Recognition {
             posterior,
             parameters,
