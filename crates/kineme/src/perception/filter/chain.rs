@@ -66,18 +66,23 @@ impl Kernel {
         beyond
     }
 
-    /// The step backward, for smoothing: what each moment is worth when its successors are worth so much, and leaving
-    /// at the end is worth `end`.
-    pub fn retreat(&self, cyclic: bool, worth: &[f64], end: f64, before: &mut [f64]) {
+    /// The step backward, for smoothing: what each moment is worth when its successors are worth so much, leaving at
+    /// the end is worth `end`, and so is breaking off, which happens with the chance `leave`.
+    pub fn retreat(
+        &self,
+        cyclic: bool,
+        worth: &[f64],
+        (end, leave): (f64, f64),
+        before: &mut [f64],
+    ) {
         let n = worth.len();
         for (i, x) in before.iter_mut().enumerate() {
             let terms = self.weights.iter().enumerate().map(|(k, w)| {
                 let at = i + self.first + k;
-                w * match (at < n, cyclic) {
-                    (true, _) => worth[at],
-                    (false, true) => worth[at % n],
-                    (false, false) => end,
-                }
+                let at = if cyclic { at % n } else { at };
+                w * worth
+                    .get(at)
+                    .map_or(end, |v| (1.0 - leave) * v + leave * end)
             });
             *x = terms.sum();
         }

@@ -81,6 +81,23 @@ impl Emission {
         })
     }
 
+    /// The number of directions, and how much each counts a second: what a moment costs that fits a state as well as
+    /// any does.
+    pub fn usual_cost(&self) -> f64 {
+        let own = |p: &Whitened| 0.5 * p.trust_per_sec * p.transform.nrows() as f64;
+        self.parts.iter().map(own).sum()
+    }
+
+    /// The tempered logarithm, a second, by which a feature fits zero everywhere.
+    pub fn fit_to_zero(&self, feature: &Feature) -> f64 {
+        let cost = |part: &Whitened| {
+            let known = part.known.iter().map(|&i| feature.values[i]);
+            let z = &part.transform * DVector::from_iterator(part.known.len(), known);
+            -0.5 * part.trust_per_sec * z.norm_squared()
+        };
+        self.parts.iter().map(cost).sum()
+    }
+
     /// How well a feature fits.
     pub fn fit(&self, feature: &Feature, fit: &mut Fit) {
         fit.states.clear();

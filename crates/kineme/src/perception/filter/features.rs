@@ -87,6 +87,24 @@ impl Layout {
         }
     }
 
+    /// The body.
+    pub fn body(&self) -> &Skeleton {
+        &self.body
+    }
+
+    /// Which numbers of a feature tell postures, not displacements.
+    pub fn still(&self) -> Vec<bool> {
+        let split = 3 * self.tips.len();
+        let n = self.posture_dims();
+        let mut still = Vec::with_capacity(self.dims());
+        for part in [split, n - split] {
+            still.extend(std::iter::repeat_n(true, part));
+            still.extend(std::iter::repeat_n(false, part));
+        }
+        still.extend([false; TRAVEL]);
+        still
+    }
+
     /// Numbers of a posture.
     fn posture_dims(&self) -> usize {
         3 * (self.tips.len() + self.joints.len())

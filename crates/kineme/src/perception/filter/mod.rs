@@ -4,9 +4,14 @@ mod chain;
 mod emission;
 mod evidence;
 mod features;
+mod learned;
 mod model;
 mod noise;
+mod place;
 mod recogniser;
 mod rows;
+mod sight;
+mod stream;
+mod track;
 
 pub use recogniser::{Filter, FilterSettings};

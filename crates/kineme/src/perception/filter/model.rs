@@ -1,8 +1,7 @@
 //! The model that listens: rows of every primitive, their features, and how observations differ from them.
 
-use std::sync::Arc;
+use std::ops::Range;
 
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::emission::{Emission, Part};
@@ -13,16 +12,20 @@ use super::rows::{Row, rows};
 use crate::error::Result;
 use crate::primitive::Vocabulary;
 
+/// A joint this far beyond where any exemplar had it cannot be believed, radians.
+const TOLERANCE_RAD: f64 = 0.5;
+
 /// Rows and what is needed to compare moments with them.
 #[derive(Debug, Clone)]
 pub(super) struct Model {
     pub layout: Layout,
     pub rows: Vec<Row>,
+    /// Where the rows have the joints.
+    pub bounds: Bounds,
     /// Half of the first moments' posture is taken off: people differ in how they stand.
     offset: bool,
     /// Features of all rows' moments, one after the other.
     features: Vec<f64>,
-    covariance: DMatrix<f64>,
     parts: Vec<Part>,
     /// For complete observations.
     pub emission: Emission,
@@ -33,11 +36,18 @@ impl Model {
         let layout = Layout::of(vocabulary.body());
         let rows = rows(vocabulary, settings.rows)?;
         let dims = layout.dims();
-        let features: Vec<Vec<f64>> = rows
-            .par_iter()
-            .map(|row| Ok(layout.of_row(row, &row.path(vocabulary)?, offset)))
-            .collect::<Result<_>>()?;
-        let features = features.concat();
+        let of = |row: &Row| {
+            let path = row.path(vocabulary)?;
+            let poses = row.progress.iter().map(|&p| path.sample(p).pose);
+            Ok((layout.of_row(row, &path, offset), Bounds::of(poses)))
+        };
+        let sampled: Vec<(Vec<f64>, Bounds)> = rows.par_iter().map(of).collect::<Result<_>>()?;
+        let mut features = Vec::new();
+        let mut bounds = Bounds::default();
+        for (own, range) in sampled {
+            features.extend(own);
+            bounds.join(&range);
+        }
         let covariance = covariance(vocabulary, &rows, &features, dims);
         let [hands, body] = layout.parts();
         let trusts = [settings.hands_trust, settings.body_trust];
@@ -58,9 +68,9 @@ impl Model {
             emission: Emission::new(&parts, &features, dims, &[])?,
             layout,
             rows,
+            bounds,
             offset,
             features,
-            covariance,
             parts,
         })
     }
@@ -91,12 +101,35 @@ impl Model {
         }
         features
     }
-
-    /// The covariance of features about their row.
-    pub fn covariance(&self) -> &DMatrix<f64> {
-        &self.covariance
-    }
 }
 
-/// A vocabulary that is shared.
-pub(super) type Shared = Arc<Vocabulary>;
+/// Least and greatest value of each coordinate.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Bounds(Vec<[f64; 2]>);
+
+impl Bounds {
+    fn of(poses: impl Iterator<Item = Vec<f64>>) -> Self {
+        let mut bounds = Self::default();
+        for pose in poses {
+            bounds.join(&Self(pose.into_iter().map(|v| [v, v]).collect()));
+        }
+        bounds
+    }
+
+    fn join(&mut self, other: &Self) {
+        if self.0.is_empty() {
+            self.0.clone_from(&other.0);
+        }
+        for (own, [low, high]) in self.0.iter_mut().zip(&other.0) {
+            *own = [own[0].min(*low), own[1].max(*high)];
+        }
+    }
+
+    /// Whether these coordinates of a pose are where the rows have them, give or take what people differ by.
+    pub fn contain(&self, mut coordinates: Range<usize>, pose: &[f64]) -> bool {
+        coordinates.all(|c| {
+            let [low, high] = self.0[c];
+            pose[c] >= low - TOLERANCE_RAD && pose[c] <= high + TOLERANCE_RAD
+        })
+    }
+}

@@ -7,6 +7,8 @@ use crate::primitive::{ParameterSource, Vocabulary};
 
 /// Standard deviation expected before any exemplar was seen, metres: what people and retargeting are good for.
 const PRIOR_M: f64 = 0.04;
+/// Never less than so much, metres: else what a few exemplars share by chance would decide everything.
+const FLOOR_M: f64 = 0.03;
 /// As many residuals of that size are taken for granted.
 const PRIOR_COUNT: f64 = 200.0;
 /// The share of the covariance that is replaced by its diagonal: features are more than exemplars determine.
@@ -64,8 +66,9 @@ pub(super) fn covariance(
     }
     let covariance = sum / count;
     let diagonal = DMatrix::from_diagonal(&covariance.diagonal());
-    let fl: f64 = std::env::var("FLOOR").map_or(0.0, |v| v.parse().unwrap());
-    covariance * (1.0 - SHRINK) + diagonal * SHRINK + DMatrix::identity(dims, dims) * (fl * fl)
+    covariance * (1.0 - SHRINK)
+        + diagonal * SHRINK
+        + DMatrix::identity(dims, dims) * (FLOOR_M * FLOOR_M)
 }
 
 /// Pairs of rows, evenly taken where they are many.

@@ -1,8 +1,26 @@
 //! [`Filter`]: the default recogniser.
 
+use super::emission::Emission;
+use super::evidence::{Evidence, evidence};
+use super::features::{Feature, Moment};
+use super::learned::{Learned, NAME, classes, learn, scores};
 use super::model::Model;
+use super::sight::Sight;
+use super::stream::Stream;
+use super::track::Network;
 use crate::error::Result;
-use crate::primitive::Vocabulary;
+use crate::perception::checked::{counts, not_negative, positive};
+use crate::perception::parts::same_body;
+use crate::perception::spans::spans;
+use crate::primitive::{
+    Calibration, Listener, Observations, Posterior, Recogniser, Recognition, Vocabulary,
+};
+
+/// Rows in all, whatever a primitive may have.
+const MOST_ROWS: usize = 2500;
+/// Spans of clips are told with so much hindsight, and last at least so long.
+const HINDSIGHT_SECS: f64 = 0.25;
+const DWELL_SECS: f64 = 0.2;
 
 /// How the filter listens.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,24 +53,179 @@ impl Default for FilterSettings {
     }
 }
 
-/// Follows a stream over primitive, parameters and phase.
+/// Follows a stream over primitive, parameters and phase, beside rest and movement of no known kind (the paper's V-A as
+/// a filter: Bayes' rule at every moment, phase that goes on at a plausible pace, primitives that compete).
 #[derive(Debug)]
 pub struct Filter<'v> {
-    vocabulary: &'v Vocabulary,
-    clips: Model,
-    settings: FilterSettings,
+    pub(super) vocabulary: &'v Vocabulary,
+    pub(super) settings: FilterSettings,
+    /// What whole clips are compared with, and what streams are.
+    pub(super) clips: Model,
+    pub(super) stream: Model,
+    pub(super) displacements: Emission,
+    pub(super) network: Network,
+    pub(super) learned: Learned,
 }
 
 impl<'v> Filter<'v> {
-    /// A filter over a vocabulary.
+    /// A filter over a vocabulary, with what it has learned of it where that is kept ([`Vocabulary::calibration`]).
     ///
     /// # Errors
     /// When a setting is out of its range.
     pub fn new(vocabulary: &'v Vocabulary, settings: &FilterSettings) -> Result<Self> {
+        positive(&[
+            ("hands_trust", settings.hands_trust),
+            ("body_trust", settings.body_trust),
+            ("clock_hz", settings.clock_hz),
+        ])?;
+        not_negative(&[("lag_secs", settings.lag_secs)])?;
+        counts(&[
+            ("directions", settings.directions, 1, 1000),
+            ("rows", settings.rows, 1, 1000),
+        ])?;
+        let primitives = vocabulary.primitives().len();
+        let settings = FilterSettings {
+            rows: settings.rows.min((MOST_ROWS / primitives.max(1)).max(1)),
+            ..settings.clone()
+        };
+        let clips = Model::new(vocabulary, &settings, true)?;
+        let stream = Model::new(vocabulary, &settings, false)?;
+        let kept = vocabulary.calibration(NAME).and_then(Learned::of);
         Ok(Self {
-            clips: Model::new(vocabulary, settings, true)?,
+            displacements: stream.without(&stream.layout.still())?,
+            network: Network::new(vocabulary, &stream.rows),
+            learned: kept.unwrap_or_else(|| Learned::usual(primitives)),
             vocabulary,
-            settings: settings.clone(),
+            settings,
+            clips,
+            stream,
+        })
+    }
+
+    /// What the filter learns of a vocabulary by leaving its exemplars out: for [`Vocabulary::calibrated`]. Primitives
+    /// with numbers in `kept` (in the order of the vocabulary) keep them.
+    ///
+    /// # Errors
+    /// Of no valid vocabulary.
+    pub fn calibration(vocabulary: &Vocabulary, kept: &[Option<Vec<f64>>]) -> Result<Calibration> {
+        let filter = Filter::new(vocabulary, &FilterSettings::default())?;
+        let limit = |numbers: &Option<Vec<f64>>| numbers.as_ref()?.first().copied();
+        let kept: Vec<Option<f64>> = kept.iter().map(limit).collect();
+        Ok(learn(&filter, &kept)?.calibration())
+    }
+
+    /// The evidence of a clip.
+    pub(super) fn evidence(&self, seen: &Observations) -> Result<Evidence> {
+        let model = &self.clips;
+        let mut sight = Sight::new(&model.layout, &model.bounds);
+        let frames = self.looked_at(seen);
+        let moments: Vec<Moment> = frames.map(|f| sight.see(&seen.at(f))).collect();
+        let mut features = model.of_clip(moments);
+        let unknown = lasting(&mut features);
+        let marginal: Emission;
+        let emission = match unknown.contains(&true) {
+            true => {
+                marginal = model.without(&unknown)?;
+                &marginal
+            }
+            false => &model.emission,
+        };
+        let moments = features.iter().map(|(f, dt)| (f, *dt));
+        Ok(evidence(&model.rows, emission, moments))
+    }
+
+    /// The frames that the filter's clock looks at.
+    fn looked_at(&self, seen: &Observations) -> impl Iterator<Item = usize> + use<> {
+        let motion = seen.motion();
+        let every = (motion.rate_hz() / self.settings.clock_hz).round() as usize;
+        (0..motion.frames()).step_by(every.max(1))
+    }
+
+    /// How probable each answer is for a clip as a whole, its novelty, and the parameters of the leading primitive.
+    fn judged(&self, seen: &Observations, resting: f64) -> Result<(Posterior, f64, Vec<f64>)> {
+        let evidence = self.evidence(seen)?;
+        let rows = &self.clips.rows;
+        let classes = classes(self, &evidence, &vec![false; rows.len()]);
+        let most = classes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let weights: Vec<f64> = classes
+            .iter()
+            .map(|c| ((c - most) / self.learned.temperature).exp())
+            .collect();
+        let sum: f64 = weights.iter().sum();
+        let odds = self
+            .learned
+            .unknown(&scores(&classes, &evidence, &self.learned.limits));
+        let none = 1.0 / (1.0 + (-odds).exp());
+        let share = (1.0 - resting) * (1.0 - none) / sum;
+        let posterior = Posterior {
+            primitives: weights.iter().map(|w| w * share).collect(),
+            rest: resting,
+            none: (1.0 - resting) * none,
+        };
+        let leading = posterior.leading().map_or(0, |(k, _)| k);
+        let own = || {
+            let pairs = rows.iter().zip(&evidence.rows);
+            pairs.filter(|(row, _)| row.primitive == leading)
+        };
+        let best = own().map(|(_, e)| *e).fold(f64::NEG_INFINITY, f64::max);
+        let dims = self.vocabulary.primitives()[leading].parameters().dims();
+        let (mut total, mut parameters) = (0.0, vec![0.0; dims]);
+        for (row, e) in own() {
+            let w = ((e - best) / self.learned.temperature).exp();
+            total += w;
+            for (sum, p) in parameters.iter_mut().zip(&row.parameters) {
+                *sum += w * p;
+            }
+        }
+        for p in &mut parameters {
+            *p /= total;
+        }
+        // Twice the probability where that tells, and the odds' logarithm beyond, so that no two clips look alike.
+        let novelty = match odds < 0.0 {
+            true => 2.0 * none,
+            false => 1.0 + odds,
+        };
+        Ok((posterior, novelty, parameters))
+    }
+}
+
+/// Numbers that are unknown most of the time are unknown for good; what is missing now and then was bridged.
+fn lasting(features: &mut [(Feature, f64)]) -> Vec<bool> {
+    let dims = features.first().map_or(0, |(f, _)| f.values.len());
+    let count = |i: usize| {
+        let unknown = features
+            .iter()
+            .filter(|(f, _)| f.unknown.get(i) == Some(&true));
+        unknown.count()
+    };
+    (0..dims).map(|i| 2 * count(i) > features.len()).collect()
+}
+
+impl Recogniser for Filter<'_> {
+    fn vocabulary(&self) -> &Vocabulary {
+        self.vocabulary
+    }
+
+    fn listen(&self) -> Box<dyn Listener + '_> {
+        Box::new(Stream::new(self, self.settings.lag_secs))
+    }
+
+    fn recognise(&self, seen: &Observations) -> Result<Recognition> {
+        let motion = seen.motion();
+        same_body(self.vocabulary, motion.skeleton())?;
+        let mut hindsight = Stream::new(self, HINDSIGHT_SECS);
+        let readings = hindsight.all(seen)?;
+        // As far as its liveliest moment is at rest, the whole is.
+        let resting = readings
+            .iter()
+            .map(|r| r.posterior.rest)
+            .fold(1.0, f64::min);
+        let (posterior, novelty, parameters) = self.judged(seen, resting)?;
+        Ok(Recognition {
+            posterior,
+            parameters,
+            novelty,
+            spans: spans(&readings, motion.rate_hz(), DWELL_SECS, false),
         })
     }
 }

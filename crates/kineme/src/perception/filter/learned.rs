@@ -1,0 +1,348 @@
+//! What the filter learns of a vocabulary by leaving exemplars out: how sure to be, and what is unknown.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::evidence::Evidence;
+use super::recogniser::Filter;
+use crate::error::Result;
+use crate::math::statistics::{mean_and_deviation, median, quantile};
+use crate::primitive::{Calibration, Observations, Vocabulary};
+
+/// The name under which a vocabulary keeps it.
+pub(super) const NAME: &str = "filter";
+/// Scores by which the unknown is told.
+pub(super) const SCORES: usize = 5;
+/// At most so many exemplars are left out, and at most so many moments of rows are compared for it.
+const MOST_FOLDS: usize = 160;
+const MOST_COMPARED: f64 = 1.5e8;
+const LEAST_FOLDS: usize = 24;
+/// Weight of the logistic regression's penalty.
+const RIDGE: f64 = 1.0;
+/// An exemplar that is known should be called so this often.
+const KEPT: f64 = 0.95;
+
+/// Plain numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Learned {
+    /// Log-likelihoods of clips are divided by it.
+    pub temperature: f64,
+    /// Mean and deviation of each score, and its weight in the logarithm of the odds of being unknown.
+    pub scores: [[f64; 3]; SCORES],
+    /// The constant of those odds.
+    pub bias: f64,
+    /// Added to the logarithm a second of unknown movement.
+    pub unknown_per_sec: f64,
+    /// For each primitive, what a clip of it costs a second at most, as a rule.
+    pub limits: Vec<f64>,
+}
+
+impl Learned {
+    /// What holds as long as nothing was learned: means of real vocabularies.
+    pub fn usual(primitives: usize) -> Self {
+        Self {
+            temperature: 8.0,
+            scores: [[0.0, 1.0, 0.0]; SCORES],
+            bias: -2.0,
+            unknown_per_sec: 0.0,
+            limits: vec![300.0; primitives],
+        }
+    }
+
+    /// As a vocabulary keeps it.
+    pub fn calibration(&self) -> Calibration {
+        let mut shared = vec![self.temperature, self.bias, self.unknown_per_sec];
+        shared.extend(self.scores.iter().flatten());
+        Calibration {
+            recogniser: NAME.into(),
+            primitives: self.limits.iter().map(|l| vec![*l]).collect(),
+            shared,
+        }
+    }
+
+    /// From what a vocabulary keeps; `None` where that is no such thing.
+    pub fn of(calibration: &Calibration) -> Option<Self> {
+        let [temperature, bias, unknown_per_sec, scores @ ..] = calibration.shared.as_slice()
+        else {
+            return None;
+        };
+        let scores = <[[f64; 3]; SCORES]>::try_from(scores.as_chunks::<3>().0).ok()?;
+        let limit = |numbers: &Vec<f64>| numbers.first().copied().filter(|l| *l > 0.0);
+        let positive = *temperature > 0.0 && scores.iter().all(|[_, d, _]| *d > 0.0);
+        Some(Self {
+            temperature: Some(*temperature).filter(|_| positive)?,
+            scores,
+            bias: *bias,
+            unknown_per_sec: *unknown_per_sec,
+            limits: calibration
+                .primitives
+                .iter()
+                .map(limit)
+                .collect::<Option<_>>()?,
+        })
+    }
+
+    /// The logarithm of the odds that a clip is none of the primitives.
+    pub fn unknown(&self, scores: &[f64; SCORES]) -> f64 {
+        let terms = scores.iter().zip(&self.scores);
+        self.bias
+            + terms
+                .map(|(s, [mean, deviation, weight])| weight * (s - mean) / deviation)
+                .sum::<f64>()
+    }
+}
+
+/// Log-likelihoods of the primitives: the mean over their rows, those left out apart. Infinitely unlikely without rows.
+pub(super) fn classes(filter: &Filter<'_>, evidence: &Evidence, left_out: &[bool]) -> Vec<f64> {
+    let rows = &filter.clips.rows;
+    let of = |primitive: usize| {
+        let own = rows.iter().zip(&evidence.rows).enumerate();
+        let own: Vec<f64> = own
+            .filter(|(r, (row, _))| row.primitive == primitive && !left_out[*r])
+            .map(|(_, (_, e))| *e)
+            .collect();
+        let most = own.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if most == f64::NEG_INFINITY {
+            return most;
+        }
+        most + (own.iter().map(|e| (e - most).exp()).sum::<f64>() / own.len() as f64).ln()
+    };
+    (0..filter.vocabulary.primitives().len()).map(of).collect()
+}
+
+/// The scores by which the unknown is told: gain over movement of any kind, lead over the second, lead over the median
+/// primitive, cost, and cost as a share of what the leading primitive usually costs; all but the last a second.
+pub(super) fn scores(classes: &[f64], evidence: &Evidence, limits: &[f64]) -> [f64; SCORES] {
+    let secs = evidence.secs.max(0.1);
+    let known: Vec<f64> = classes.iter().copied().filter(|c| c.is_finite()).collect();
+    let mut best = 0;
+    for (k, c) in classes.iter().enumerate() {
+        if *c > classes[best] {
+            best = k;
+        }
+    }
+    let first = classes[best];
+    let second = classes
+        .iter()
+        .enumerate()
+        .filter(|(k, c)| *k != best && c.is_finite());
+    let second = second.map(|(_, c)| *c).fold(f64::NEG_INFINITY, f64::max);
+    let lead = |other: f64| {
+        if other.is_finite() {
+            (first - other) / secs
+        } else {
+            0.0
+        }
+    };
+    let cost = -first / secs;
+    [
+        (first - evidence.broad) / secs,
+        lead(second),
+        lead(median(&known).unwrap_or(first)),
+        cost,
+        cost / limits[best],
+    ]
+}
+
+/// A clip of which something is left out: the primitives' log-likelihoods, the clip, and its true primitive if that is
+/// among them.
+struct Trial {
+    classes: Vec<f64>,
+    fold: usize,
+    truth: Option<usize>,
+}
+
+/// Learns from a vocabulary's own exemplars.
+///
+/// Each is left out twice: with the half of its primitive's other exemplars that is nearest to it, which are by the same
+/// person if persons there are, and it stands for a known movement of somebody new; then with its whole primitive, and
+/// it stands for something unknown. `kept` has limits that are not to change.
+pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned> {
+    let vocabulary = filter.vocabulary;
+    let folds = folds(filter);
+    let evidences: Vec<Evidence> = folds
+        .par_iter()
+        .map(|&(k, i)| {
+            let motion = vocabulary.primitives()[k].exemplars()[i].motion.clone();
+            filter.evidence(&Observations::complete(motion))
+        })
+        .collect::<Result<_>>()?;
+    let usual = Learned::usual(vocabulary.primitives().len());
+    let trials = trials(filter, &folds, &evidences);
+    let limits = limits(vocabulary, &trials, &evidences, kept, &usual);
+    let temperature = temperature(&trials).unwrap_or(usual.temperature);
+    let mut learned = Learned {
+        temperature,
+        limits,
+        ..usual
+    };
+    let told: Vec<([f64; SCORES], bool)> = trials
+        .iter()
+        .filter(|t| t.classes.iter().filter(|c| c.is_finite()).count() > 1)
+        .map(|t| {
+            (
+                scores(&t.classes, &evidences[t.fold], &learned.limits),
+                t.truth.is_none(),
+            )
+        })
+        .collect();
+    if told.iter().any(|t| t.1) && told.iter().any(|t| !t.1) {
+        (learned.scores, learned.bias) = logistic(&told);
+        let gains = |unknown: bool| -> Vec<f64> {
+            told.iter()
+                .filter(|t| t.1 == unknown)
+                .map(|t| t.0[0])
+                .collect()
+        };
+        // Between what the least of the known gains over movement of any kind, and what the unknown gains.
+        let (known, unknown) = (gains(false), gains(true));
+        if let (Some(low), Some(high)) = (quantile(&known, 1.0 - KEPT), median(&unknown)) {
+            learned.unknown_per_sec = 0.5 * (low + low.min(high));
+        }
+    }
+    Ok(learned)
+}
+
+/// The exemplars that are left out, evenly taken: primitive and exemplar.
+fn folds(filter: &Filter<'_>) -> Vec<(usize, usize)> {
+    let primitives = filter.vocabulary.primitives().iter().enumerate();
+    let all: Vec<(usize, usize)> = primitives
+        .flat_map(|(k, p)| (0..p.exemplars().len()).map(move |i| (k, i)))
+        .collect();
+    let secs = |&(k, i): &(usize, usize)| {
+        filter.vocabulary.primitives()[k].exemplars()[i]
+            .motion
+            .duration_secs()
+    };
+    let frames = all.iter().map(secs).sum::<f64>() * filter.settings.clock_hz / all.len() as f64;
+    let states: usize = filter.clips.rows.iter().map(|r| r.phases.len()).sum();
+    let affordable = (MOST_COMPARED / (frames * states as f64).max(1.0)) as usize;
+    let count = all.len().min(affordable.clamp(LEAST_FOLDS, MOST_FOLDS));
+    (0..count).map(|f| all[f * all.len() / count]).collect()
+}
+
+fn trials(filter: &Filter<'_>, folds: &[(usize, usize)], evidences: &[Evidence]) -> Vec<Trial> {
+    let rows = &filter.clips.rows;
+    let mut trials = Vec::new();
+    for (fold, (&(k, i), evidence)) in folds.iter().zip(evidences).enumerate() {
+        let others: Vec<usize> = (0..rows.len())
+            .filter(|&r| rows[r].primitive == k && rows[r].exemplar != Some(i))
+            .collect();
+        let mut near = others.clone();
+        near.sort_by(|&a, &b| evidence.rows[b].total_cmp(&evidence.rows[a]));
+        near.truncate(others.len() / 2);
+        let mut left_out: Vec<bool> = rows
+            .iter()
+            .map(|r| r.primitive == k && r.exemplar == Some(i))
+            .collect();
+        for r in near {
+            left_out[r] = true;
+        }
+        if !others.is_empty() {
+            trials.push(Trial {
+                classes: classes(filter, evidence, &left_out),
+                fold,
+                truth: Some(k),
+            });
+        }
+        let whole: Vec<bool> = rows.iter().map(|r| r.primitive == k).collect();
+        trials.push(Trial {
+            classes: classes(filter, evidence, &whole),
+            fold,
+            truth: None,
+        });
+    }
+    trials
+}
+
+/// What clips of each primitive cost at most, as a rule; of primitives that say nothing the median of the others.
+fn limits(
+    vocabulary: &Vocabulary,
+    trials: &[Trial],
+    evidences: &[Evidence],
+    kept: &[Option<f64>],
+    usual: &Learned,
+) -> Vec<f64> {
+    let costs = |k: usize| -> Vec<f64> {
+        let own = trials.iter().filter(|t| t.truth == Some(k));
+        own.map(|t| -t.classes[k] / evidences[t.fold].secs.max(0.1))
+            .collect()
+    };
+    let of = |k: usize| quantile(&costs(k), KEPT).filter(|l| *l > 0.0);
+    let found: Vec<Option<f64>> = (0..vocabulary.primitives().len())
+        .map(|k| kept.get(k).copied().flatten().or_else(|| of(k)))
+        .collect();
+    let known: Vec<f64> = found.iter().copied().flatten().collect();
+    let middle = median(&known).unwrap_or(usual.limits[0]);
+    found.into_iter().map(|l| l.unwrap_or(middle)).collect()
+}
+
+/// The temperature at which the truth is most probable; `None` without known trials or rivals.
+fn temperature(trials: &[Trial]) -> Option<f64> {
+    let known: Vec<(&Vec<f64>, usize)> = trials
+        .iter()
+        .filter_map(|t| Some((&t.classes, t.truth?)))
+        .filter(|(c, _)| c.len() > 1)
+        .collect();
+    if known.is_empty() {
+        return None;
+    }
+    let loss = |t: f64| -> f64 {
+        let of = |(classes, truth): &(&Vec<f64>, usize)| {
+            let most = classes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let sum: f64 = classes.iter().map(|c| ((c - most) / t).exp()).sum();
+            sum.ln() - (classes[*truth] - most) / t
+        };
+        known.iter().map(of).sum()
+    };
+    let candidates = (0..=60).map(|k| 10f64.powf(-0.5 + 3.0 * f64::from(k) / 60.0));
+    candidates.min_by(|a, b| loss(*a).total_cmp(&loss(*b)))
+}
+
+/// Logistic regression with a ridge, by Newton's steps; known and unknown count alike.
+fn logistic(told: &[([f64; SCORES], bool)]) -> ([[f64; 3]; SCORES], f64) {
+    let mut scores = [[0.0, 1.0, 0.0]; SCORES];
+    for (k, score) in scores.iter_mut().enumerate() {
+        let values: Vec<f64> = told.iter().map(|t| t.0[k]).collect();
+        let (mean, deviation) = mean_and_deviation(&values);
+        *score = [mean, deviation.max(1e-9), 0.0];
+    }
+    let row = |t: &[f64; SCORES]| {
+        let mut x = DVector::from_element(SCORES + 1, 1.0);
+        for k in 0..SCORES {
+            x[k] = (t[k] - scores[k][0]) / scores[k][1];
+        }
+        x
+    };
+    let share = told.iter().filter(|t| t.1).count() as f64 / told.len() as f64;
+    let mut weights = DVector::<f64>::zeros(SCORES + 1);
+    for _ in 0..30 {
+        let mut gradient = &weights * -RIDGE;
+        let mut hessian = DMatrix::<f64>::identity(SCORES + 1, SCORES + 1) * RIDGE;
+        for (t, unknown) in told {
+            let x = row(t);
+            let p = 1.0 / (1.0 + (-weights.dot(&x)).exp());
+            let (target, count) = match unknown {
+                true => (1.0, 0.5 / share),
+                false => (0.0, 0.5 / (1.0 - share)),
+            };
+            gradient += &x * (count * (target - p));
+            hessian += &x * x.transpose() * (count * p * (1.0 - p));
+        }
+        let Some(step) = hessian.cholesky().map(|c| c.solve(&gradient)) else {
+            break;
+        };
+        weights += &step;
+        if step.norm() < 1e-9 {
+            break;
+        }
+    }
+    // The threshold lets almost all of the known pass, whatever that costs of the unknown.
+    let bare = |t: &[f64; SCORES]| weights.dot(&row(t)) - weights[SCORES];
+    let known: Vec<f64> = told.iter().filter(|t| !t.1).map(|t| bare(&t.0)).collect();
+    for (score, weight) in scores.iter_mut().zip(weights.iter()) {
+        score[2] = *weight;
+    }
+    let keeping = quantile(&known, KEPT).unwrap_or(0.0);
+    (scores, weights[SCORES].min(-keeping))
+}

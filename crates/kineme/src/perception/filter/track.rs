@@ -1,0 +1,177 @@
+//! The forward pass over everything at once: rows of all primitives, rest, and movement of no known kind.
+
+use super::chain::Kernel;
+use super::rows::Row;
+use crate::primitive::Vocabulary;
+
+/// Chances a second: to break a movement off, to begin one from rest, to begin one from unknown movement, and to go
+/// between rest and unknown movement.
+const LEAVE: f64 = 0.3;
+const BEGIN: f64 = 1.0;
+const CHANGE: f64 = 0.5;
+/// What follows a movement that has ended: rest, something unknown, or another primitive.
+const AFTER: [f64; 3] = [0.3, 0.2, 0.5];
+/// A movement is entered at its beginning, within so much of it ...
+const ENTRY: f64 = 0.06;
+/// ... but for one time in so many, when it is entered anywhere.
+const ANYWHERE: f64 = 0.15;
+/// Before anything was seen: rest, unknown, and all primitives alike.
+const PRIOR: [f64; 3] = [0.3, 0.2, 0.5];
+
+/// How mass goes from row to row.
+#[derive(Debug, Clone)]
+pub(super) struct Network {
+    /// First state of each row, and the number of states.
+    pub starts: Vec<usize>,
+    /// How the mass that enters a primitive is spread over its rows' states.
+    entry: Vec<f64>,
+    /// `n x n`: which primitive follows which.
+    follow: Vec<f64>,
+    primitives: usize,
+}
+
+/// Probabilities of all states.
+#[derive(Debug, Clone)]
+pub(super) struct Mass {
+    pub states: Vec<f64>,
+    pub rest: f64,
+    pub none: f64,
+}
+
+impl Network {
+    pub fn new(vocabulary: &Vocabulary, rows: &[Row]) -> Self {
+        let n = vocabulary.primitives().len();
+        let mut starts = vec![0];
+        let mut entry = Vec::new();
+        for row in rows {
+            let count = rows.iter().filter(|r| r.primitive == row.primitive).count() as f64;
+            let near = |p: f64| if row.cyclic { 1.0 } else { (-p / ENTRY).exp() };
+            let sum: f64 = row.progress.iter().map(|&p| near(p)).sum();
+            let even = 1.0 / row.progress.len() as f64;
+            let share = |&p: &f64| ((1.0 - ANYWHERE) * near(p) / sum + ANYWHERE * even) / count;
+            entry.extend(row.progress.iter().map(share));
+            starts.push(entry.len());
+        }
+        let transitions = vocabulary.transitions();
+        let pairs = (0..n).flat_map(|a| (0..n).map(move |b| (a, b)));
+        Self {
+            starts,
+            entry,
+            follow: pairs.map(|(a, b)| transitions.probability(a, b)).collect(),
+            primitives: n,
+        }
+    }
+
+    /// What is believed before anything was seen.
+    pub fn prior(&self, rows: &[Row]) -> Mass {
+        let mut states = self.entry.clone();
+        for (r, row) in rows.iter().enumerate() {
+            let own = &mut states[self.starts[r]..self.starts[r + 1]];
+            // A stream may begin in the midst of a movement as well as before it.
+            let even = 0.5 * own.iter().sum::<f64>() / row.progress.len() as f64;
+            for m in own {
+                *m = (0.5 * *m + even) * PRIOR[2] / self.primitives as f64;
+            }
+        }
+        Mass {
+            states,
+            rest: PRIOR[0],
+            none: PRIOR[1],
+        }
+    }
+
+    /// Mass after `secs`, before anything is seen.
+    pub fn forward(&self, rows: &[Row], kernels: &[Kernel], mass: &Mass, secs: f64) -> Mass {
+        let chance = |rate: f64| 1.0 - (-rate * secs).exp();
+        let (leave, begin, change) = (chance(LEAVE), chance(BEGIN), chance(CHANGE));
+        let n = self.primitives;
+        let mut states = vec![0.0; mass.states.len()];
+        let mut ended = vec![0.0; n];
+        for (r, row) in rows.iter().enumerate() {
+            let own = self.starts[r]..self.starts[r + 1];
+            let next = &mut states[own.clone()];
+            let mut out = kernels[r].advance(row.cyclic, &mass.states[own], next);
+            for m in next.iter_mut() {
+                out += leave * *m;
+                *m *= 1.0 - leave;
+            }
+            ended[row.primitive] += out;
+        }
+        let all: f64 = ended.iter().sum();
+        let mut into = vec![begin * (mass.rest + mass.none) / n as f64; n];
+        for (from, out) in ended.iter().enumerate() {
+            for (to, sum) in into.iter_mut().enumerate() {
+                *sum += AFTER[2] * out * self.follow[from * n + to];
+            }
+        }
+        for (r, row) in rows.iter().enumerate() {
+            let own = self.starts[r]..self.starts[r + 1];
+            for (m, e) in states[own.clone()].iter_mut().zip(&self.entry[own]) {
+                *m += into[row.primitive] * e;
+            }
+        }
+        let keep = 1.0 - begin;
+        Mass {
+            states,
+            rest: AFTER[0] * all + keep * ((1.0 - change) * mass.rest + change * mass.none),
+            none: AFTER[1] * all + keep * ((1.0 - change) * mass.none + change * mass.rest),
+        }
+    }
+
+    /// The step backward: what each state was worth when those after `secs` are worth so much (their likelihood
+    /// included).
+    pub fn backward(&self, rows: &[Row], kernels: &[Kernel], worth: &Mass, secs: f64) -> Mass {
+        let chance = |rate: f64| 1.0 - (-rate * secs).exp();
+        let (leave, begin, change) = (chance(LEAVE), chance(BEGIN), chance(CHANGE));
+        let n = self.primitives;
+        let mut entered = vec![0.0; n];
+        for (r, row) in rows.iter().enumerate() {
+            let own = self.starts[r]..self.starts[r + 1];
+            let pairs = worth.states[own.clone()].iter().zip(&self.entry[own]);
+            entered[row.primitive] += pairs.map(|(w, e)| w * e).sum::<f64>();
+        }
+        let ended: Vec<f64> = (0..n)
+            .map(|from| {
+                let follow = &self.follow[from * n..(from + 1) * n];
+                let next: f64 = follow.iter().zip(&entered).map(|(f, e)| f * e).sum();
+                AFTER[0] * worth.rest + AFTER[1] * worth.none + AFTER[2] * next
+            })
+            .collect();
+        let mut states = vec![0.0; worth.states.len()];
+        for (r, row) in rows.iter().enumerate() {
+            let own = self.starts[r]..self.starts[r + 1];
+            let end = ended[row.primitive];
+            let before = &mut states[own.clone()];
+            kernels[r].retreat(row.cyclic, &worth.states[own], (end, leave), before);
+        }
+        let begun = entered.iter().sum::<f64>() / n as f64;
+        let from = |same: f64, other: f64| {
+            begin * begun + (1.0 - begin) * ((1.0 - change) * same + change * other)
+        };
+        Mass {
+            states,
+            rest: from(worth.rest, worth.none),
+            none: from(worth.none, worth.rest),
+        }
+    }
+}
+
+impl Mass {
+    /// Multiplies by likelihoods given as logarithms, and makes the sum one. The logarithm of the sum is returned.
+    pub fn weigh(&mut self, logs: &[f64], factor: f64, rest: f64, none: f64) -> f64 {
+        let seen = logs.iter().zip(&self.states).filter(|(_, m)| **m > 0.0);
+        let most = seen.map(|(l, _)| factor * l).fold(rest.max(none), f64::max);
+        for (m, l) in self.states.iter_mut().zip(logs) {
+            *m *= (factor * l - most).exp();
+        }
+        self.rest *= (rest - most).exp();
+        self.none *= (none - most).exp();
+        let sum = self.states.iter().sum::<f64>() + self.rest + self.none;
+        for m in &mut self.states {
+            *m /= sum;
+        }
+        self.rest /= sum;
+        self.none /= sum;
+        most + sum.ln()
+    }
+}
