@@ -52,14 +52,27 @@ impl Asked {
         })
     }
 
+    fn of_method(&self, method: Method) -> Result<&[Judged]> {
+        let asked = self.methods.iter().position(|m| *m == method);
+        Ok(&self.judged[asked.ok_or("a method that was not asked")?])
+    }
+
     /// Whether each clip was answered rightly, rest and none ruled out.
     ///
     /// # Errors
     /// When the method was not asked.
     pub fn rights(&self, method: Method) -> Result<Vec<f64>> {
-        let asked = self.methods.iter().position(|m| *m == method);
-        let judged = &self.judged[asked.ok_or("a method that was not asked")?];
+        let judged = self.of_method(method)?;
         Ok(rights(&among_known(judged, method == Method::Paper)))
+    }
+
+    /// The calibration error of the answers as they were given.
+    ///
+    /// # Errors
+    /// When the method was not asked, or gives no probabilities.
+    pub fn calibration_error(&self, method: Method) -> Result<f64> {
+        let scores = scores(self.of_method(method)?, &Bootstrap::default())?;
+        Ok(scores.calibration_error.ok_or("no probabilities")?.value)
     }
 }
 

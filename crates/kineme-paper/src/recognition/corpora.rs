@@ -29,6 +29,23 @@ pub struct Corpus {
     pub splits: Vec<Split>,
 }
 
+/// How much of a set is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// Classes, in the order of the index.
+    pub classes: usize,
+    /// Clips of each subject in each class.
+    pub clips: usize,
+}
+
+impl Part {
+    /// All of it.
+    pub const WHOLE: Part = Part {
+        classes: usize::MAX,
+        clips: usize::MAX,
+    };
+}
+
 /// The published zeros of MSR-Action3D: a clip without a posture.
 const ALL_ZERO: &str = "a13_s09_e02";
 
@@ -96,7 +113,7 @@ pub const HDM05: &str = "HDM05";
 /// Bandai-Namco 2: 10 contents, 30 Hz; one half of the styles asked, then the other.
 pub const BANDAI_NAMCO: &str = "Bandai-Namco 2";
 
-/// The sets of these names, from a corpus folder; of each subject at most `most` clips a class, all where `None`.
+/// The sets of these names, or a part of each, from a corpus folder.
 ///
 /// # Errors
 /// For an unknown name, and when the corpus lacks a file.
@@ -104,12 +121,12 @@ pub fn corpora(
     corpus: &Path,
     body: &Arc<Skeleton>,
     names: &[&str],
-    most: Option<usize>,
+    part: Part,
 ) -> Result<Vec<Corpus>> {
     let rows = index(corpus)?;
     let of = |name: &&str| {
         let plan = PLANS.iter().find(|p| p.name == *name);
-        read(corpus, body, &rows, plan.ok_or("no such set")?, most)
+        read(corpus, body, &rows, plan.ok_or("no such set")?, part)
     };
     names.iter().map(of).collect()
 }
@@ -119,19 +136,24 @@ fn read(
     body: &Arc<Skeleton>,
     rows: &[IndexRow],
     plan: &Plan,
-    most: Option<usize>,
+    part: Part,
 ) -> Result<Corpus> {
     let class = |r: &IndexRow| match plan.content {
         true => r.content().to_string(),
         false => r.label.clone(),
     };
     let mut picked: Vec<&IndexRow> = Vec::new();
+    let mut classes: Vec<String> = Vec::new();
     for r in rows {
         if r.archive != plan.archive || r.format != plan.format || r.file.contains(ALL_ZERO) {
             continue;
         }
+        if !classes.contains(&class(r)) {
+            classes.push(class(r));
+        }
         let alike = |p: &&&IndexRow| p.subject == r.subject && class(p) == class(r);
-        if most.is_none_or(|most| picked.iter().filter(alike).count() < most) {
+        let read = classes.iter().take(part.classes).any(|c| *c == class(r));
+        if read && picked.iter().filter(alike).count() < part.clips {
             picked.push(r);
         }
     }

@@ -5,10 +5,8 @@ use kineme::evaluation::{
     Constant, Features, NearestDtw, NearestDtwSettings, NearestPosture, NearestPostureSettings,
 };
 use kineme::perception::encoding::{Encoder, EncodingSettings};
-use kineme::perception::{Frame, FrameSettings, Paper, PaperSettings};
-use kineme::primitive::{
-    Mismatched, Modelling, Primitive, Recogniser, Transitions, Vocabulary,
-};
+use kineme::perception::{Filter, FilterSettings, Frame, FrameSettings, Paper, PaperSettings};
+use kineme::primitive::{Mismatched, Modelling, Primitive, Recogniser, Transitions, Vocabulary};
 use rayon::prelude::*;
 
 use crate::models::exemplar;
@@ -57,7 +55,7 @@ impl Method {
     pub fn over<'v>(self, vocabulary: &'v Vocabulary) -> Result<Box<dyn Recogniser + 'v>> {
         let hands = || Features::Effectors(vec!["left_hand".into(), "right_hand".into()]);
         Ok(match self {
-            Method::Filter => return Err("not yet".into()),
+            Method::Filter => Box::new(Filter::new(vocabulary, &FilterSettings::default())?),
             Method::Frame => Box::new(Frame::new(vocabulary, &FrameSettings::default())?),
             Method::Paper => Box::new(Paper::new(vocabulary, &PaperSettings::default())?),
             Method::Encode => Box::new(Encoder::new(vocabulary, &EncodingSettings::default())?),
@@ -122,13 +120,14 @@ impl Known {
     /// Without primitives.
     pub fn of(primitives: Vec<Option<Primitive>>) -> Result<Self> {
         let classes = primitives.len();
-        let class_of = (0..classes)
-            .filter(|&c| primitives[c].is_some())
-            .collect();
+        let class_of = (0..classes).filter(|&c| primitives[c].is_some()).collect();
         let primitives: Vec<Primitive> = primitives.into_iter().flatten().collect();
         let body = primitives.first().ok_or("no primitives")?.body().clone();
         let transitions = Transitions::none(primitives.len());
         let vocabulary = Vocabulary::new(body, primitives, Vec::new(), transitions)?;
+        let unlearned = vec![None; vocabulary.primitives().len()];
+        let calibration = Filter::calibration(&vocabulary, &unlearned)?;
+        let vocabulary = vocabulary.calibrated(calibration)?;
         Ok(Self {
             vocabulary,
             class_of,

@@ -84,7 +84,9 @@ pub fn write_lines(
         "\n| row | {method} | {baseline} | difference | MiniRocket | aim | |\n| --- | --- | --- | --- | --- | --- | --- |"
     )?;
     for l in lines {
-        let peer = peers.value(&l.row).map_or("-".into(), |v| format!("{v:.3}"));
+        let peer = peers
+            .value(&l.row)
+            .map_or("-".into(), |v| format!("{v:.3}"));
         let aim = l.aim.map_or("-".into(), |a| format!("{a:.2}"));
         writeln!(
             out,
@@ -102,11 +104,16 @@ pub fn write_lines(
         .map(|l| l.row.as_str())
         .collect();
     let gain = lines.iter().map(|l| l.difference.value).sum::<f64>() / lines.len().max(1) as f64;
-    let met = lines.iter().filter(|l| l.aim.is_some_and(|a| l.ours.value >= a));
+    let met = lines
+        .iter()
+        .filter(|l| l.aim.is_some_and(|a| l.ours.value >= a));
     let aims = lines.iter().filter(|l| l.aim.is_some()).count();
     let held = match below.as_slice() {
         [] => "on no row below it by more than the interval".to_string(),
-        rows => format!("**below it by more than the interval: {}**", rows.join("; ")),
+        rows => format!(
+            "**below it by more than the interval: {}**",
+            rows.join("; ")
+        ),
     };
     writeln!(
         out,
