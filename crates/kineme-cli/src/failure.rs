@@ -101,11 +101,15 @@ fn tell(line: &str) {
 
 /// Writes to stdout; a reader that has gone away is no failure.
 pub fn print(bytes: &[u8]) -> Result<(), Failure> {
+    offer(bytes).map(|_| ())
+}
+
+/// As [`print`], and tells whether anybody reads still: streams end when nobody does.
+pub fn offer(bytes: &[u8]) -> Result<bool, Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::failed(format!("standard output: {e}")))
-        }
-        _ => Ok(()),
+        Ok(()) => Ok(true),
+        Err(e) if e.kind() == ErrorKind::BrokenPipe => Ok(false),
+        Err(e) => Err(Failure::failed(format!("standard output: {e}"))),
     }
 }

@@ -2,6 +2,7 @@
 
 mod args;
 mod choreograph;
+mod classify;
 mod convert;
 mod demo;
 mod derive;
@@ -13,10 +14,12 @@ mod evaluate;
 mod failure;
 mod findings;
 mod info;
+mod json;
 mod labelled;
 mod learn;
 mod outputs;
 mod progress;
+mod recognisers;
 mod show;
 mod source;
 mod synthesize;
@@ -72,6 +75,7 @@ fn run(cli: &Cli) -> Result<u8, Failure> {
         Command::Edit(args) => edit::run(args, &cli.global),
         Command::Synthesize(args) => synthesize::run(args, &cli.global),
         Command::Evaluate(args) => evaluate::run(args, &cli.global),
+        Command::Classify(args) => classify::run(args, &cli.global),
         Command::Encode(args) => encode::run(args, &cli.global),
         Command::Demo(args) => demo::run(args, &cli.global),
     }

@@ -50,7 +50,8 @@ fn numbers(value: &Value) -> Vec<f64> {
 fn unseen_motions_are_judged_beside_the_baselines() {
     let folder = learned();
     let at = folder.path();
-    let told = json(at, "evaluate p.kineme m/test.csv --json --threads 1");
+    let line = "evaluate p.kineme m/test.csv --methods 1nn-dtw,nearest-posture,constant";
+    let told = json(at, &format!("{line} --json --threads 1"));
     assert_eq!(
         (&told["clips"], &told["negatives"]),
         (&Value::from(10), &Value::from(1))
@@ -86,10 +87,10 @@ fn unseen_motions_are_judged_beside_the_baselines() {
     let stranger = told["confusion"]["none"].as_object().expect("answers");
     assert!(!stranger.contains_key("none") && stranger.len() == 1);
 
-    let again = json(at, "evaluate p.kineme m/test.csv --json --threads 2");
+    let again = json(at, &format!("{line} --json --threads 2"));
     assert_eq!(told, again, "threads change nothing");
 
-    let table = done(at, "evaluate p.kineme m/test.csv");
+    let table = done(at, line);
     for words in [
         "10 clips, 1 of them negatives",
         "0.900 (0.",
@@ -110,6 +111,38 @@ fn unseen_motions_are_judged_beside_the_baselines() {
         numbers(&timed["methods"]["constant"]["decision_us"]).len(),
         2
     );
+}
+
+#[test]
+fn classifiers_are_judged_like_the_baselines_and_reject() {
+    let folder = learned();
+    let at = folder.path();
+    let told = json(at, "evaluate p.kineme m/test.csv --json");
+    let methods = told["methods"].as_object().expect("methods");
+    let mut names: Vec<&str> = methods.keys().map(String::as_str).collect();
+    names.sort_unstable();
+    assert_eq!(
+        names,
+        ["1nn-dtw", "constant", "filter", "frame", "nearest-posture"]
+    );
+    // Of the first method: unseen punches are told apart, and the stranger is none of them.
+    for (truth, answers) in [
+        ("punch-out", serde_json::json!({"punch-out": 4})),
+        ("punch-return", serde_json::json!({"punch-return": 5})),
+        ("none", serde_json::json!({"none": 1})),
+    ] {
+        assert_eq!(told["confusion"][truth], answers, "{truth}");
+    }
+    let paper = json(at, "evaluate p.kineme m/test.csv --json --methods paper");
+    let paper = &paper["methods"]["paper"];
+    assert!(paper["accuracy"].is_array(), "{paper}");
+    let binary = "judged each by itself, answers have no calibration";
+    assert!(
+        paper["ece"].is_null() && paper["log_loss"].is_null(),
+        "{binary}: {paper}"
+    );
+    let table = done(at, "evaluate p.kineme m/test.csv --methods frame");
+    assert!(!table.out.contains("always names"), "{}", table.out);
 }
 
 #[test]

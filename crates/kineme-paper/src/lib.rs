@@ -6,6 +6,7 @@ pub mod figures;
 pub mod flow_table;
 pub mod interpolation_table;
 pub mod intervals;
+pub mod inverse;
 mod kmeans;
 pub mod model_table;
 pub mod models;

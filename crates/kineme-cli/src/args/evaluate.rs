@@ -9,6 +9,12 @@ use super::ReadArgs;
 /// A way to recognise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum MethodName {
+    /// The default of `classify`
+    Filter,
+    /// A few postures judged together, exactly
+    Frame,
+    /// As published, every primitive by itself
+    Paper,
     /// The nearest exemplar by time warping, a baseline
     #[value(name = "1nn-dtw")]
     NearestDtw,
@@ -28,9 +34,9 @@ pub enum MethodName {
 Examples:
   kineme evaluate moves.kineme tests.csv
   kineme evaluate moves.kineme tests.csv --root captures/     files are named as from there
-  kineme evaluate moves.kineme tests.csv --methods 1nn-dtw,constant
+  kineme evaluate moves.kineme tests.csv --methods filter,paper
   kineme evaluate moves.kineme all.csv --unknown-as-negative  labels that were not learned are strange movements
-  kineme evaluate moves.kineme tests.csv --json | jq '.methods[\"1nn-dtw\"].accuracy'
+  kineme evaluate moves.kineme tests.csv --json | jq '.methods.filter.accuracy'
 A manifest:
   file,label,start,end
   takes/anna.bvh,jab,0.5,1.2
@@ -53,7 +59,7 @@ pub struct EvaluateArgs {
         value_enum,
         value_name = "METHOD,...",
         value_delimiter = ',',
-        default_value = "1nn-dtw,nearest-posture,constant"
+        default_value = "filter,frame,1nn-dtw,nearest-posture,constant"
     )]
     pub methods: Vec<MethodName>,
     /// Take labels that are no primitive of the vocabulary as negatives

@@ -1,9 +1,11 @@
 //! The command line, as clap reads it and as `--help` teaches it.
 
+mod classify;
 mod encode;
 mod evaluate;
 mod model;
 
+pub use classify::{ClassifierArgs, ClassifierName, ClassifyArgs};
 pub use encode::{EncodeArgs, EncodeMethod};
 pub use evaluate::{EvaluateArgs, MethodName};
 pub use model::{
@@ -28,6 +30,7 @@ Examples:
   kineme synthesize moves.kineme jab -o jab.bvh --reach right_hand=0.5,-0.35,0.1
                                                   a motion of one, aimed
   kineme evaluate moves.kineme tests.csv          how well its movements are recognised
+  kineme classify moves.kineme take.bvh           which of them a motion is, and when
   kineme encode moves.kineme take.bvh             which of them a motion is, by its hands
   kineme convert take.amc take.bvh                another format, nothing lost
 
@@ -76,6 +79,7 @@ pub enum Command {
     Edit(Box<EditArgs>),
     Synthesize(Box<SynthesizeArgs>),
     Evaluate(Box<EvaluateArgs>),
+    Classify(Box<ClassifyArgs>),
     Encode(Box<EncodeArgs>),
     Demo(DemoArgs),
 }

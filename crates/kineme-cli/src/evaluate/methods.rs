@@ -7,14 +7,20 @@ use kineme::evaluation::{
 };
 use kineme::primitive::Recogniser;
 
-use crate::args::MethodName;
+use crate::args::{ClassifierArgs, ClassifierName, MethodName};
+use crate::failure::Failure;
+use crate::recognisers::classifier;
 
 /// The recogniser of this name over a vocabulary, with its defaults.
 pub(super) fn recogniser(
     name: MethodName,
     vocabulary: &Vocabulary,
-) -> kineme::Result<Box<dyn Recogniser + '_>> {
+) -> Result<Box<dyn Recogniser + '_>, Failure> {
+    let classifier = |name| classifier(name, &ClassifierArgs::default(), vocabulary);
     Ok(match name {
+        MethodName::Filter => classifier(ClassifierName::Filter)?,
+        MethodName::Frame => classifier(ClassifierName::Frame)?,
+        MethodName::Paper => classifier(ClassifierName::Paper)?,
         MethodName::NearestDtw => {
             Box::new(NearestDtw::new(vocabulary, &NearestDtwSettings::default())?)
         }
@@ -29,6 +35,7 @@ pub(super) fn recogniser(
 /// Whether a method ever answers that a movement is none of the primitives.
 pub(super) fn can_reject(method: MethodName) -> bool {
     match method {
+        MethodName::Filter | MethodName::Frame | MethodName::Paper => true,
         MethodName::NearestDtw | MethodName::NearestPosture | MethodName::Constant => false,
     }
 }

@@ -2,13 +2,14 @@
 
 use kineme::Vocabulary;
 use kineme::evaluation::{Bootstrap, Confusion, Estimate, Scores};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use super::clips::Clip;
 use super::methods::can_reject;
 use super::{Outcome, class, name};
 use crate::args::EvaluateArgs;
 use crate::failure::Failure;
+use crate::json::{InOrder, line};
 use crate::table::{Side, aligned};
 
 #[derive(Serialize)]
@@ -35,15 +36,6 @@ struct MethodLine {
     decision_us: Option<[f64; 2]>,
 }
 
-/// An object whose keys keep their order.
-struct InOrder<T>(Vec<(String, T)>);
-
-impl<T: Serialize> Serialize for InOrder<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
-    }
-}
-
 /// The document of `--json`.
 pub(super) fn document(
     vocabulary: &Vocabulary,
@@ -52,7 +44,7 @@ pub(super) fn document(
 ) -> Result<String, Failure> {
     let triple = |e: Estimate| [e.value, e.low, e.high];
     let value = |e: Option<Estimate>| e.map(|e| e.value);
-    let line = |o: &Outcome| {
+    let method = |o: &Outcome| {
         let s = &o.scores;
         let line = MethodLine {
             accuracy: triple(s.accuracy),
@@ -79,12 +71,10 @@ pub(super) fn document(
         clips: clips.len(),
         negatives: clips.iter().filter(|c| c.truth.is_none()).count(),
         on_exemplars: clips.iter().filter(|c| c.is_exemplar).count(),
-        methods: InOrder(outcomes.iter().map(line).collect()),
+        methods: InOrder(outcomes.iter().map(method).collect()),
         confusion: InOrder(confusion),
     };
-    let text = serde_json::to_string(&document);
-    let text = text.map_err(|e| Failure::failed(format!("the results as JSON: {e}")))?;
-    Ok(text + "\n")
+    line(&document)
 }
 
 /// A class and how often each class was answered for it; the commonest answer first.

@@ -17,11 +17,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use archive::{Archive, Handles};
-use kineme::Recording;
+use kineme::{Recording, Skeleton};
 use walk::Walk;
 
 use crate::detect::{self, Kind};
 use crate::error::{FormatError, Place, Result};
+use crate::tables::observed::{self, Observed};
 
 /// What people say about input that files do not.
 #[derive(Debug, Clone, Default)]
@@ -92,6 +93,18 @@ impl Entry {
         let bytes = self.place.bytes(&self.name, None, &self.handles)?;
         let hash = blake3::hash(&bytes).to_hex().to_string();
         Ok((self.parse(&bytes)?, hash))
+    }
+
+    /// Reads a joint-angle table of this body, with what was missing in it; `None` of everything else.
+    ///
+    /// # Errors
+    /// When the file cannot be read or is no sound table, naming file and place.
+    pub fn read_observed(&self, body: &Arc<Skeleton>) -> Result<Option<Observed>> {
+        if self.kind != Some(Kind::Angles) {
+            return Ok(None);
+        }
+        let bytes = self.place.bytes(&self.name, None, &self.handles)?;
+        observed::parse(&self.name, &bytes, body)
     }
 
     fn parse(&self, bytes: &[u8]) -> Result<Recording> {

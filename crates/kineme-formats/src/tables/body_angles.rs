@@ -49,42 +49,16 @@ pub fn table(motion: &Motion) -> AngleTable {
 /// As [`angles::parse`]; when a column is no coordinate of one of the bodies, or the root's cells are not numbers.
 pub fn parse(name: &str, bytes: &[u8]) -> Result<Recording> {
     let table = angles::parse(name, bytes)?;
-    let refused = |e: kineme::Error| FormatError::new(name, Place::File, e.to_string(), "a motion");
     let body = body_of(name, &table)?;
-    let mut warnings = Vec::new();
-    let grid = Clock::of(table.times.clone()).grid(name, true, None, &mut warnings)?;
-    Blame(name).proportionate(body.joints().len(), grid.frames, bytes.len())?;
-    let path = |values: &mut dyn Iterator<Item = Option<f64>>| {
-        let mut path = vec![None; grid.frames];
-        for (frame, value) in grid.frame_of_row.iter().zip(values) {
-            path[*frame] = value;
-        }
-        path
-    };
-    let mut missing = 0;
-    let mut fill = |path: Vec<Option<f64>>| {
-        missing += path.iter().filter(|v| v.is_none()).count();
-        filled(&path)
-    };
-    let root: Vec<Vec<f64>> = (0..4)
-        .map(|i| {
-            let column = fill(path(&mut table.root.iter().map(|r| r[i])));
-            column.unwrap_or_else(|| vec![0.0; grid.frames])
-        })
-        .collect();
-    let neutral = body.neutral();
-    let mut poses: Vec<f64> = neutral.repeat(grid.frames);
-    let mut unseen = 0;
-    for (i, coordinate) in body.coordinate_names().iter().enumerate() {
-        let column = table.columns.iter().find(|(c, _)| c == coordinate);
-        let values = column.and_then(|(_, v)| fill(path(&mut v.iter().copied())));
-        unseen += usize::from(values.is_none());
-        for (f, value) in values.into_iter().flatten().enumerate() {
-            poses[f * body.dof() + i] = value;
-        }
-    }
-    if missing > 0 {
-        warnings.push(format!("{missing} cells missing and filled in time"));
+    let Filled {
+        motion,
+        cells,
+        unseen,
+        mut warnings,
+        ..
+    } = fill(name, &table, &body, bytes.len())?;
+    if cells > 0 {
+        warnings.push(format!("{cells} cells missing and filled in time"));
     }
     if unseen > 0 {
         warnings.push(format!(
@@ -92,20 +66,93 @@ pub fn parse(name: &str, bytes: &[u8]) -> Result<Recording> {
             body.name()
         ));
     }
-    let roots = (0..grid.frames)
-        .map(|f| Root {
-            position: Vector3::new(root[0][f], root[1][f], root[2][f]),
-            yaw: root[3][f],
-        })
-        .collect();
-    let motion = Motion::new(name, body, grid.rate_hz, poses, roots).map_err(refused)?;
     let recording = Recording::from_motion(&motion);
     let source = Source {
         format: Format::AngleTable,
         warnings,
         ..recording.source().clone()
     };
-    recording.with_source(source).map_err(refused)
+    recording.with_source(source).map_err(|e| refused(name, &e))
+}
+
+/// A table as a motion without gaps, and where they were.
+pub(super) struct Filled {
+    pub motion: Motion,
+    /// Whether a joint lacked a coordinate: frames x joints, frame-major.
+    pub missing: Vec<bool>,
+    /// Cells that were filled in time.
+    pub cells: usize,
+    /// Coordinates without any value.
+    pub unseen: usize,
+    pub warnings: Vec<String>,
+}
+
+/// Lays a table of a body, from a file of so many bytes, on an even grid of frames without gaps.
+pub(super) fn fill(
+    name: &str,
+    table: &AngleTable,
+    body: &Arc<Skeleton>,
+    bytes: usize,
+) -> Result<Filled> {
+    let mut warnings = Vec::new();
+    let grid = Clock::of(table.times.clone()).grid(name, true, None, &mut warnings)?;
+    let joints = body.joints().len();
+    Blame(name).proportionate(joints, grid.frames, bytes)?;
+    let path = |values: &mut dyn Iterator<Item = Option<f64>>| {
+        let mut path = vec![None; grid.frames];
+        for (frame, value) in grid.frame_of_row.iter().zip(values) {
+            path[*frame] = value;
+        }
+        path
+    };
+    let mut cells = 0;
+    let mut fill = |path: &[Option<f64>]| {
+        cells += path.iter().filter(|v| v.is_none()).count();
+        filled(path)
+    };
+    let root: Vec<Vec<f64>> = (0..4)
+        .map(|i| {
+            let column = fill(&path(&mut table.root.iter().map(|r| r[i])));
+            column.unwrap_or_else(|| vec![0.0; grid.frames])
+        })
+        .collect();
+    let mut poses: Vec<f64> = body.neutral().repeat(grid.frames);
+    let mut missing = vec![false; grid.frames * joints];
+    let mut unseen = 0;
+    let names = body.coordinate_names();
+    for joint in 0..joints {
+        for i in body.coordinates(joint) {
+            let column = table.columns.iter().find(|(c, _)| *c == names[i]);
+            let seen = column.map(|(_, values)| path(&mut values.iter().copied()));
+            for f in 0..grid.frames {
+                let known = seen.as_ref().is_some_and(|path| path[f].is_some());
+                missing[f * joints + joint] |= !known;
+            }
+            let values = seen.and_then(|path| fill(&path));
+            unseen += usize::from(values.is_none());
+            for (f, value) in values.into_iter().flatten().enumerate() {
+                poses[f * body.dof() + i] = value;
+            }
+        }
+    }
+    let roots = (0..grid.frames)
+        .map(|f| Root {
+            position: Vector3::new(root[0][f], root[1][f], root[2][f]),
+            yaw: root[3][f],
+        })
+        .collect();
+    let motion = Motion::new(name, Arc::clone(body), grid.rate_hz, poses, roots);
+    Ok(Filled {
+        motion: motion.map_err(|e| refused(name, &e))?,
+        missing,
+        cells,
+        unseen,
+        warnings,
+    })
+}
+
+fn refused(name: &str, error: &kineme::Error) -> FormatError {
+    FormatError::new(name, Place::File, error.to_string(), "a motion")
 }
 
 /// The body whose coordinates the columns are; where they serve both, the one that they fill better.

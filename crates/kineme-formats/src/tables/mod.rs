@@ -4,6 +4,7 @@ pub mod angles;
 pub mod body_angles;
 mod kinect;
 pub mod msr;
+pub mod observed;
 pub mod positions;
 mod timebase;
 mod upright;

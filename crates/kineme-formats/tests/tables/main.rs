@@ -7,6 +7,7 @@ mod learned;
 mod manifest;
 mod msr;
 mod npz;
+mod observed;
 mod positions;
 mod real_data;
 mod vocabulary;

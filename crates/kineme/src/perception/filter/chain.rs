@@ -76,15 +76,24 @@ impl Kernel {
         before: &mut [f64],
     ) {
         let n = worth.len();
-        for (i, x) in before.iter_mut().enumerate() {
-            let terms = self.weights.iter().enumerate().map(|(k, w)| {
-                let at = i + self.first + k;
-                let at = if cyclic { at % n } else { at };
-                w * worth
-                    .get(at)
-                    .map_or(end, |v| (1.0 - leave) * v + leave * end)
-            });
-            *x = terms.sum();
+        before.fill(0.0);
+        for (k, w) in self.weights.iter().enumerate() {
+            let by = self.first + k;
+            let (kept, round) = match cyclic {
+                true => (n - by % n, by % n),
+                false => (n - by.min(n), 0),
+            };
+            for (x, v) in before[..kept].iter_mut().zip(&worth[n - kept..]) {
+                *x += w * ((1.0 - leave) * v + leave * end);
+            }
+            for (x, v) in before[kept..].iter_mut().zip(&worth[..round]) {
+                *x += w * ((1.0 - leave) * v + leave * end);
+            }
+            if !cyclic {
+                for x in &mut before[kept..] {
+                    *x += w * end;
+                }
+            }
         }
     }
 }

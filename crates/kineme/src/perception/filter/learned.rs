@@ -19,8 +19,12 @@ const MOST_COMPARED: f64 = 1.5e8;
 const LEAST_FOLDS: usize = 24;
 /// Weight of the logistic regression's penalty.
 const RIDGE: f64 = 1.0;
-/// An exemplar that is known should be called so this often.
+/// What this share of clips costs at most is usual.
 const KEPT: f64 = 0.95;
+/// This share of the exemplars that are left out is to be called by its name, with so much to spare in logarithms of
+/// odds.
+const CALLED: f64 = 0.98;
+const MARGIN: f64 = 1.0;
 
 /// Plain numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -127,8 +131,9 @@ pub(super) fn scores(classes: &[f64], evidence: &Evidence, limits: &[f64]) -> [f
         .enumerate()
         .filter(|(k, c)| *k != best && c.is_finite());
     let second = second.map(|(_, c)| *c).fold(f64::NEG_INFINITY, f64::max);
+    // With two primitives the second is the only other one: its distance tells nothing of the unknown.
     let lead = |other: f64| {
-        if other.is_finite() {
+        if other.is_finite() && classes.len() > 2 {
             (first - other) / secs
         } else {
             0.0
@@ -154,9 +159,10 @@ struct Trial {
 
 /// Learns from a vocabulary's own exemplars.
 ///
-/// Each is left out twice: with the half of its primitive's other exemplars that is nearest to it, which are by the same
-/// person if persons there are, and it stands for a known movement of somebody new; then with its whole primitive, and
-/// it stands for something unknown. `kept` has limits that are not to change.
+/// Each is left out three times: alone, and it stands for a known movement of somebody known; with the half of its
+/// primitive's other exemplars that is nearest to it, which are by the same person if persons there are, and it stands
+/// for a known movement of somebody new; and with its whole primitive, and it stands for something unknown. `kept` has
+/// limits that are not to change.
 pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned> {
     let vocabulary = filter.vocabulary;
     let folds = folds(filter);
@@ -176,9 +182,10 @@ pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned
         limits,
         ..usual
     };
+    let possible = |t: &&Trial| t.classes.iter().any(|c| c.is_finite());
     let told: Vec<([f64; SCORES], bool)> = trials
         .iter()
-        .filter(|t| t.classes.iter().filter(|c| c.is_finite()).count() > 1)
+        .filter(possible)
         .map(|t| {
             (
                 scores(&t.classes, &evidences[t.fold], &learned.limits),
@@ -188,6 +195,21 @@ pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned
         .collect();
     if told.iter().any(|t| t.1) && told.iter().any(|t| !t.1) {
         (learned.scores, learned.bias) = logistic(&told);
+        // Whatever that costs of the unknown, the known are to be called by their name: the odds of being unknown stay
+        // below the probability of the leading primitive, with a margin as people come who differ more than those seen.
+        let bare = Learned {
+            bias: 0.0,
+            ..learned.clone()
+        };
+        let room: Vec<f64> = trials
+            .iter()
+            .filter(possible)
+            .zip(&told)
+            .filter(|(t, _)| t.truth.is_some())
+            .map(|(t, (scores, _))| -loss(&t.classes, None, temperature) - bare.unknown(scores))
+            .collect();
+        let keeping = quantile(&room, 1.0 - CALLED).unwrap_or(learned.bias);
+        learned.bias = learned.bias.min(keeping - MARGIN);
         let gains = |unknown: bool| -> Vec<f64> {
             told.iter()
                 .filter(|t| t.1 == unknown)
@@ -235,15 +257,19 @@ fn trials(filter: &Filter<'_>, folds: &[(usize, usize)], evidences: &[Evidence])
             .iter()
             .map(|r| r.primitive == k && r.exemplar == Some(i))
             .collect();
-        for r in near {
-            left_out[r] = true;
-        }
-        if !others.is_empty() {
+        let mut known = |left_out: &[bool]| {
             trials.push(Trial {
-                classes: classes(filter, evidence, &left_out),
+                classes: classes(filter, evidence, left_out),
                 fold,
                 truth: Some(k),
             });
+        };
+        if !others.is_empty() {
+            known(&left_out);
+            for r in near {
+                left_out[r] = true;
+            }
+            known(&left_out);
         }
         let whole: Vec<bool> = rows.iter().map(|r| r.primitive == k).collect();
         trials.push(Trial {
@@ -287,16 +313,22 @@ fn temperature(trials: &[Trial]) -> Option<f64> {
     if known.is_empty() {
         return None;
     }
-    let loss = |t: f64| -> f64 {
-        let of = |(classes, truth): &(&Vec<f64>, usize)| {
-            let most = classes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let sum: f64 = classes.iter().map(|c| ((c - most) / t).exp()).sum();
-            sum.ln() - (classes[*truth] - most) / t
-        };
+    let all = |t: f64| -> f64 {
+        let of = |(classes, truth): &(&Vec<f64>, usize)| loss(classes, Some(*truth), t);
         known.iter().map(of).sum()
     };
     let candidates = (0..=60).map(|k| 10f64.powf(-0.5 + 3.0 * f64::from(k) / 60.0));
-    candidates.min_by(|a, b| loss(*a).total_cmp(&loss(*b)))
+    candidates.min_by(|a, b| all(*a).total_cmp(&all(*b)))
+}
+
+/// Less the logarithm of a primitive's probability among all, of the most probable one if none is named.
+fn loss(classes: &[f64], of: Option<usize>, temperature: f64) -> f64 {
+    let most = classes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let sum: f64 = classes
+        .iter()
+        .map(|c| ((c - most) / temperature).exp())
+        .sum();
+    sum.ln() - of.map_or(0.0, |k| (classes[k] - most) / temperature)
 }
 
 /// Logistic regression with a ridge, by Newton's steps; known and unknown count alike.
@@ -337,12 +369,8 @@ fn logistic(told: &[([f64; SCORES], bool)]) -> ([[f64; 3]; SCORES], f64) {
             break;
         }
     }
-    // The threshold lets almost all of the known pass, whatever that costs of the unknown.
-    let bare = |t: &[f64; SCORES]| weights.dot(&row(t)) - weights[SCORES];
-    let known: Vec<f64> = told.iter().filter(|t| !t.1).map(|t| bare(&t.0)).collect();
     for (score, weight) in scores.iter_mut().zip(weights.iter()) {
         score[2] = *weight;
     }
-    let keeping = quantile(&known, KEPT).unwrap_or(0.0);
-    (scores, weights[SCORES].min(-keeping))
+    (scores, weights[SCORES])
 }

@@ -15,6 +15,12 @@ use crate::primitive::{Listener, Observation, Observations, Posterior, Reading};
 
 /// Emissions kept for patterns of unknown numbers that come back.
 const PATTERNS: usize = 8;
+/// Displacements count so much more at rest, where a body stays within half of what people differ by in movement.
+const STILL: f64 = 4.0;
+/// A longer time between two looks is taken for so much, seconds.
+const LONGEST_SECS: f64 = 0.25;
+/// Looks gone back over at a time.
+const BLOCK: usize = 64;
 
 /// A filter that listens.
 pub(super) struct Stream<'a> {
@@ -39,9 +45,7 @@ struct Look {
     secs: f64,
     dt: f64,
     mass: Mass,
-    fit: Fit,
-    rest: f64,
-    none: f64,
+    likelihood: Mass,
     pose: Vec<f64>,
 }
 
@@ -105,24 +109,28 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Answers for every frame of a motion, each with the hindsight that the motion's length allows.
+    /// Answers for every frame of a motion, each with at least the hindsight asked for as far as the motion allows;
+    /// without places. Looks are gone back over many at a time, which costs little more than once.
     pub fn all(&mut self, seen: &Observations) -> Result<Vec<Reading>> {
         let frames = seen.motion().frames();
         let mut readings: Vec<Option<Reading>> = vec![None; frames];
         let frame = |secs: f64| ((secs * seen.motion().rate_hz()).round() as usize).min(frames - 1);
         for f in 0..frames {
-            let reading = self.hear(&seen.at(f))?;
-            if let Some(look) = self.lag.front() {
-                readings[frame(look.secs)] = Some(reading);
+            self.take(&seen.at(f))?;
+            let ends = f + 1 == frames;
+            let latest = self.lag.back().map_or(0.0, |l| l.secs);
+            if !ends && self.lag.len() < BLOCK {
+                continue;
             }
-        }
-        // What is left within the lag has less and less to come.
-        while self.lag.len() > 1 {
-            self.lag.pop_front();
-            let (Some(mass), Some(look)) = (self.smoothed(), self.lag.front()) else {
-                break;
-            };
-            readings[frame(look.secs)] = Some(self.filter.reading(&mass, &look.pose)?);
+            let masses = self.smoothed();
+            for mass in masses {
+                let Some(look) = self.lag.front() else { break };
+                if !ends && latest - look.secs < self.lag_secs {
+                    break;
+                }
+                readings[frame(look.secs)] = Some(self.filter.reading(&mass, None)?);
+                self.lag.pop_front();
+            }
         }
         let mut last = readings.iter().flatten().next().cloned();
         let filled = readings.into_iter().map(|r| {
@@ -132,6 +140,27 @@ impl<'a> Stream<'a> {
             last.clone()
         });
         Ok(filled.flatten().collect())
+    }
+
+    /// Takes an observation; whether it was looked at.
+    fn take(&mut self, seen: &Observation<'_>) -> Result<bool> {
+        self.guard.check(self.filter.vocabulary.body(), seen)?;
+        let moment = self.sight.see(seen);
+        let secs = seen.secs;
+        self.recent.push(moment);
+        let tick = 1.0 / self.filter.settings.clock_hz;
+        // A frame in time is looked at though clocks differ in their last digits.
+        let due = self.looked.is_none_or(|l| secs - l >= 0.98 * tick);
+        let (true, Some(now), Some(then)) = (due, self.recent.now(), self.recent.then()) else {
+            return Ok(false);
+        };
+        let feature = self.filter.stream.layout.feature(now, &then, None);
+        // What lies further apart than displacements look back is no more evidence than that.
+        let dt = self.looked.map_or(tick, |l| (secs - l).min(LONGEST_SECS));
+        let look = self.look(&feature, secs, dt)?;
+        self.looked = Some(secs);
+        self.lag.push_back(look);
+        Ok(true)
     }
 
     /// Takes a feature and believes what it says.
@@ -148,98 +177,77 @@ impl<'a> Stream<'a> {
         }
         // At rest the displacements are nothing, and the posture may be any: it fits as postures usually do.
         let posture = (all.usual_cost() - displacements.usual_cost()).max(0.0);
-        let rest = dt * (displacements.fit_to_zero(feature) - posture);
+        let rest = dt * (STILL * displacements.fit_to_zero(feature) - posture);
         let none = dt * (self.fit.broad + self.filter.learned.unknown_per_sec);
-        self.mass.weigh(&self.fit.states, dt, rest, none);
+        let likelihood = Mass::likelihood(&self.fit.states, dt, rest, none);
+        self.mass.weigh(&likelihood);
         Ok(Look {
             secs,
             dt,
             mass: self.mass.clone(),
-            fit: self.fit.clone(),
-            rest,
-            none,
-            pose: Vec::new(),
+            likelihood,
+            pose: self.sight.pose(),
         })
     }
 
-    /// What the oldest look within the lag is worth in the light of those after it.
-    fn smoothed(&self) -> Option<Mass> {
+    /// What is believed of each look within the lag, the oldest first, in the light of those after it.
+    fn smoothed(&self) -> Vec<Mass> {
         let (network, rows) = (&self.filter.network, &self.filter.stream.rows);
-        let oldest = self.lag.front()?;
+        let mut smoothed = Vec::with_capacity(self.lag.len());
         let mut worth: Option<Mass> = None;
-        for later in self.lag.iter().skip(1).rev() {
-            let mut seen = worth.unwrap_or_else(|| Mass {
-                states: vec![1.0; oldest.mass.states.len()],
-                rest: 1.0,
-                none: 1.0,
-            });
-            seen.weigh(&later.fit.states, later.dt, later.rest, later.none);
+        for (k, look) in self.lag.iter().enumerate().rev() {
+            let mut mass = look.mass.clone();
+            if let Some(worth) = &worth {
+                mass.weigh(worth);
+            }
+            smoothed.push(mass);
+            if k == 0 {
+                break;
+            }
+            let seen = match worth {
+                None => look.likelihood.clone(),
+                Some(mut worth) => {
+                    worth.weigh(&look.likelihood);
+                    worth
+                }
+            };
             let kernels: Vec<Kernel>;
-            let kernels = match (self.kernels.0 - later.dt).abs() <= 1e-6 {
+            let kernels = match (self.kernels.0 - look.dt).abs() <= 1e-6 {
                 true => &self.kernels.1,
                 false => {
-                    kernels = rows.iter().map(|r| Kernel::of(r, later.dt)).collect();
+                    kernels = rows.iter().map(|r| Kernel::of(r, look.dt)).collect();
                     &kernels
                 }
             };
-            worth = Some(network.backward(rows, kernels, &seen, later.dt));
+            worth = Some(network.backward(rows, kernels, &seen, look.dt));
         }
-        let mut mass = oldest.mass.clone();
-        if let Some(worth) = worth {
-            for (m, w) in mass.states.iter_mut().zip(&worth.states) {
-                *m *= w;
-            }
-            mass.rest *= worth.rest;
-            mass.none *= worth.none;
-            let sum = mass.states.iter().sum::<f64>() + mass.rest + mass.none;
-            for m in &mut mass.states {
-                *m /= sum;
-            }
-            mass.rest /= sum;
-            mass.none /= sum;
-        }
-        Some(mass)
+        smoothed.reverse();
+        smoothed
     }
 }
 
 impl Listener for Stream<'_> {
     fn hear(&mut self, seen: &Observation<'_>) -> Result<Reading> {
-        let body = self.filter.vocabulary.body();
-        self.guard.check(body, seen)?;
-        let moment = self.sight.see(seen);
-        let secs = seen.secs;
-        self.recent.push(moment);
-        let tick = 1.0 / self.filter.settings.clock_hz;
-        // A frame in time is looked at though clocks differ in their last digits.
-        let due = self.looked.is_none_or(|l| secs - l >= 0.98 * tick);
-        if let (true, Some(now), Some(then)) = (due, self.recent.now(), self.recent.then()) {
-            let feature = self.filter.stream.layout.feature(now, &then, None);
-            // What lies further apart than displacements look back is no more evidence than that.
-            let dt = self.looked.map_or(tick, |l| (secs - l).min(0.25));
-            let mut look = self.look(&feature, secs, dt)?;
-            look.pose = self.sight.pose();
-            self.looked = Some(secs);
-            self.lag.push_back(look);
-            let from = secs - self.lag_secs;
-            while self.lag.get(1).is_some_and(|l| l.secs <= from + 1e-9) {
-                self.lag.pop_front();
-            }
-            self.answer = None;
-        }
-        if let Some(answer) = &self.answer {
+        let looked = self.take(seen)?;
+        if let (false, Some(answer)) = (looked, &self.answer) {
             return Ok(answer.clone());
         }
-        let mass = self.smoothed().unwrap_or_else(|| self.mass.clone());
-        let pose = self.lag.front().map_or(seen.pose, |l| l.pose.as_slice());
-        let reading = self.filter.reading(&mass, pose)?;
+        let from = seen.secs - self.lag_secs;
+        while self.lag.get(1).is_some_and(|l| l.secs <= from + 1e-9) {
+            self.lag.pop_front();
+        }
+        let masses = self.smoothed();
+        let mass = masses.first().unwrap_or(&self.mass);
+        let pose = self.lag.front().map(|l| l.pose.as_slice());
+        let reading = self.filter.reading(mass, pose)?;
         self.answer = Some(reading.clone());
         Ok(reading)
     }
 }
 
 impl Filter<'_> {
-    /// What is thought when so much is believed of each state.
-    fn reading(&self, mass: &Mass, pose: &[f64]) -> Result<Reading> {
+    /// What is thought when so much is believed of each state; where on the primitive, if the pose is given.
+    fn reading(&self, mass: &Mass, pose: Option<&[f64]>) -> Result<Reading> {
         let rows = &self.stream.rows;
         let mut primitives = vec![0.0; self.vocabulary.primitives().len()];
         let mut rest = mass.rest;
@@ -262,15 +270,15 @@ impl Filter<'_> {
             rest,
             none: mass.none,
         };
-        let place = match posterior.leading().filter(|(_, p)| *p > 0.0) {
-            Some((leading, _)) => {
+        let place = match (posterior.leading().filter(|(_, p)| *p > 0.0), pose) {
+            (Some((leading, _)), Some(pose)) => {
                 let spread = Spread::of(rows, &self.network.starts, &mass.states, leading);
                 let primitive = &self.vocabulary.primitives()[leading];
                 spread
                     .map(|s| place(primitive, leading, &s, pose))
                     .transpose()?
             }
-            None => None,
+            _ => None,
         };
         let known = posterior.primitives.iter().sum::<f64>() + posterior.rest;
         Ok(Reading {

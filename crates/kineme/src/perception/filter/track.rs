@@ -7,7 +7,7 @@ use crate::primitive::Vocabulary;
 /// Chances a second: to break a movement off, to begin one from rest, to begin one from unknown movement, and to go
 /// between rest and unknown movement.
 const LEAVE: f64 = 0.3;
-const BEGIN: f64 = 1.0;
+const BEGIN: f64 = 2.0;
 const CHANGE: f64 = 0.5;
 /// What follows a movement that has ended: rest, something unknown, or another primitive.
 const AFTER: [f64; 3] = [0.3, 0.2, 0.5];
@@ -157,21 +157,31 @@ impl Network {
 }
 
 impl Mass {
-    /// Multiplies by likelihoods given as logarithms, and makes the sum one. The logarithm of the sum is returned.
-    pub fn weigh(&mut self, logs: &[f64], factor: f64, rest: f64, none: f64) -> f64 {
-        let seen = logs.iter().zip(&self.states).filter(|(_, m)| **m > 0.0);
-        let most = seen.map(|(l, _)| factor * l).fold(rest.max(none), f64::max);
-        for (m, l) in self.states.iter_mut().zip(logs) {
-            *m *= (factor * l - most).exp();
+    /// Likelihoods from their logarithms, up to a factor that all share: those of the states times `factor`.
+    pub fn likelihood(logs: &[f64], factor: f64, rest: f64, none: f64) -> Self {
+        let most = logs
+            .iter()
+            .map(|l| factor * l)
+            .fold(rest.max(none), f64::max);
+        Self {
+            states: logs.iter().map(|l| (factor * l - most).exp()).collect(),
+            rest: (rest - most).exp(),
+            none: (none - most).exp(),
         }
-        self.rest *= (rest - most).exp();
-        self.none *= (none - most).exp();
-        let sum = self.states.iter().sum::<f64>() + self.rest + self.none;
-        for m in &mut self.states {
-            *m /= sum;
+    }
+
+    /// Multiplies each by another, and makes the sum one; where no mass is left, what was believed before stays.
+    pub fn weigh(&mut self, by: &Self) {
+        let pairs = self.states.iter().zip(&by.states);
+        let (rest, none) = (self.rest * by.rest, self.none * by.none);
+        let sum = pairs.map(|(m, w)| m * w).sum::<f64>() + rest + none;
+        if sum <= 0.0 {
+            return;
         }
-        self.rest /= sum;
-        self.none /= sum;
-        most + sum.ln()
+        for (m, w) in self.states.iter_mut().zip(&by.states) {
+            *m *= w / sum;
+        }
+        self.rest = rest / sum;
+        self.none = none / sum;
     }
 }
