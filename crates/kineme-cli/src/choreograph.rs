@@ -15,7 +15,7 @@ use crate::failure::{Failure, print};
 use crate::outputs::{existing, mirrored, refuse_existing, unwritten};
 use crate::source::body;
 use crate::vocabularies::{
-    self, Lesson, check_cyclic, check_out, learn, modelling, print_notes, read_bytes,
+    self, Lesson, calibrated, check_cyclic, check_out, learn, modelling, print_notes, read_bytes,
 };
 
 /// The manifest beside the motions.
@@ -76,7 +76,7 @@ pub fn run(args: &ChoreographArgs, global: &Global) -> Result<u8, Failure> {
         let behaviors = behaviors.collect();
         let transitions = Transitions::none(primitives.len());
         let made = Vocabulary::new(Arc::clone(&body), primitives, behaviors, transitions)?;
-        vocabulary = Some((out, made));
+        vocabulary = Some((out, calibrated(made, None)?));
     }
     if let (Some(folder), Some(paths)) = (&args.motions, &paths) {
         write_motions(&performed, folder, paths, global)?;

@@ -16,7 +16,7 @@ use crate::findings::{self, Seconds};
 use crate::outputs::{existing, refuse_existing, unwritten};
 use crate::progress;
 use crate::source::{Source, body, print_warnings};
-use crate::vocabularies::print_notes;
+use crate::vocabularies::{calibrated, print_notes};
 
 /// A motion of the body, and where it came from.
 struct Taken {
@@ -77,7 +77,11 @@ pub fn run(args: &DeriveArgs, global: &Global) -> Result<u8, Failure> {
         None
     } else {
         let source = |i: usize| hashes.get(i).cloned();
-        Some(modelled(&derived, &motions, &source, &mut clock)?)
+        let vocabulary = modelled(&derived, &motions, &source, &mut clock)?;
+        clock.step(Some(Step::Calibration));
+        let vocabulary = calibrated(vocabulary, None)?;
+        clock.step(None);
+        Some(vocabulary)
     };
     let seconds = args.timings.then(|| clock.seconds());
 
@@ -305,6 +309,8 @@ enum Step {
     Deriving(Stage),
     /// Making primitives of groups.
     Primitives,
+    /// What recognisers learn of them.
+    Calibration,
 }
 
 /// Times of the steps.
@@ -339,6 +345,7 @@ impl Clock {
             Some(Step::Deriving(Stage::Embedding)) => of.embedding += took,
             Some(Step::Deriving(Stage::Clustering)) => of.clustering += took,
             Some(Step::Primitives) => of.primitives += took,
+            Some(Step::Calibration) => of.calibration += took,
             None => {}
         }
         of.total = self.begun.elapsed().as_secs_f64();

@@ -10,7 +10,7 @@ use crate::failure::{Failure, complain};
 use crate::labelled::{Example, Manifest};
 use crate::source::Read;
 use crate::vocabularies::{
-    self, Lesson, check_cyclic, check_out, learn, modelling, print_notes, read,
+    self, Lesson, calibrated, check_cyclic, check_out, learn, modelling, print_notes, read,
 };
 
 pub fn run(args: &EditArgs, global: &Global) -> Result<u8, Failure> {
@@ -44,14 +44,14 @@ pub fn run(args: &EditArgs, global: &Global) -> Result<u8, Failure> {
     }
     let modelled: Vec<&str> = editor.modelled.iter().map(String::as_str).collect();
     check_cyclic(&args.model, &modelled)?;
-    let vocabulary = editor.draft.finished()?;
-    let changed = vocabulary.primitives().iter();
+    let edited = calibrated(editor.draft.finished()?, Some(&vocabulary))?;
+    let changed = edited.primitives().iter();
     print_notes(
         changed.filter(|p| editor.modelled.iter().any(|m| m == p.name())),
         false,
     );
-    let told = describe::all(&vocabulary, &args.out.display().to_string(), global)?;
-    vocabularies::write(&vocabulary, &args.out, &told, global)?;
+    let told = describe::all(&edited, &args.out.display().to_string(), global)?;
+    vocabularies::write(&edited, &args.out, &told, global)?;
     let count = editor.left_out.len();
     let mut read = skipped.unwrap_or_else(|| Read::nothing(count));
     read.skip(editor.left_out);

@@ -38,6 +38,8 @@ pub struct Seconds {
     pub clustering: f64,
     /// Making primitives of groups.
     pub primitives: f64,
+    /// Fitting what recognisers learn of them.
+    pub calibration: f64,
     /// All of it.
     pub total: f64,
 }
@@ -161,13 +163,14 @@ impl Findings<'_> {
         if let Some(s) = &self.seconds {
             text.push_str(&format!(
                 "seconds: reading {:.2}, segmentation {:.2}, distances {:.2}, embedding {:.2}, clustering {:.2}, \
-                 primitives {:.2}, total {:.2}\n",
+                 primitives {:.2}, calibration {:.2}, total {:.2}\n",
                 s.reading,
                 s.segmentation,
                 s.distances,
                 s.embedding,
                 s.clustering,
                 s.primitives,
+                s.calibration,
                 s.total
             ));
         }

@@ -9,7 +9,9 @@ use crate::describe;
 use crate::failure::Failure;
 use crate::labelled::{Example, Manifest};
 use crate::source::body;
-use crate::vocabularies::{self, Lesson, check_cyclic, check_out, learn, modelling, print_notes};
+use crate::vocabularies::{
+    self, Lesson, calibrated, check_cyclic, check_out, learn, modelling, print_notes,
+};
 
 pub fn run(args: &LearnArgs, global: &Global) -> Result<u8, Failure> {
     check_out(&args.out, "vocabulary", global)?;
@@ -54,6 +56,7 @@ pub fn run(args: &LearnArgs, global: &Global) -> Result<u8, Failure> {
     let behaviors = behaviors.collect();
     let transitions = Transitions::none(primitives.len());
     let vocabulary = Vocabulary::new(Arc::clone(&body), primitives, behaviors, transitions)?;
+    let vocabulary = calibrated(vocabulary, None)?;
     let told = describe::all(&vocabulary, &args.out.display().to_string(), global)?;
     vocabularies::write(&vocabulary, &args.out, &told, global)?;
     Ok(read.print_skipped())

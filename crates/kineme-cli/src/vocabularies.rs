@@ -78,6 +78,18 @@ pub fn write(
     Ok(())
 }
 
+/// The vocabulary with what recognisers learn of it; what they knew of the primitives of `before` they keep.
+pub fn calibrated(
+    vocabulary: Vocabulary,
+    before: Option<&Vocabulary>,
+) -> Result<Vocabulary, Failure> {
+    let spinner = progress::spinner();
+    spinner.set_message("calibrating recognition");
+    let calibrated = kineme::perception::calibrated(vocabulary, before);
+    spinner.finish_and_clear();
+    Ok(calibrated?)
+}
+
 /// How the command line wants exemplars modelled.
 pub fn modelling(args: &ModelArgs, body: &Skeleton) -> Result<Modelling, Failure> {
     let interpolation = match args.interpolation {

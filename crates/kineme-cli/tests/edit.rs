@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{done, kineme, names, vocabularies, vocabulary};
+use common::{done, json, kineme, names, vocabularies, vocabulary};
 use kineme::{Primitive, Vocabulary};
 
 #[test]
@@ -148,5 +148,76 @@ fn behaviors_and_transitions_follow_an_edit() {
             .iter()
             .flat_map(|b| &b.primitives)
             .any(gone)
+    );
+}
+
+#[test]
+fn recognition_is_calibrated_and_stays_so() {
+    let folder = vocabularies();
+    let at = folder.path();
+    let before = vocabulary(at, "punching.kineme");
+    let recognisers: Vec<&str> = before
+        .calibrations()
+        .iter()
+        .map(|c| c.recogniser.as_str())
+        .collect();
+    assert_eq!(recognisers, ["encoder", "filter"]);
+    // What an edit leaves, and where it was before.
+    let cases = [
+        ("--rename punch-out=jab", vec![0, 1]),
+        (
+            "--rename punch-out=punch-return --rename punch-return=punch-out",
+            vec![0, 1],
+        ),
+        ("--remove punch-out", vec![1]),
+    ];
+    for (line, places) in cases {
+        done(
+            at,
+            &format!("edit punching.kineme -o e.kineme --force {line}"),
+        );
+        let edited = vocabulary(at, "e.kineme");
+        for (now, then) in edited.calibrations().iter().zip(before.calibrations()) {
+            let kept: Vec<_> = places.iter().map(|&i| then.primitives[i].clone()).collect();
+            assert_eq!(now.primitives, kept, "{line}");
+            assert_eq!(now.shared == then.shared, places.len() == 2, "{line}");
+        }
+        assert_eq!(edited.calibrations().len(), 2, "{line}");
+    }
+    // A vocabulary without is told from one with, and becomes one by an edit.
+    let bare = Vocabulary::new(
+        before.body().clone(),
+        before.primitives().to_vec(),
+        before.behaviors().to_vec(),
+        before.transitions().clone(),
+    );
+    let bytes = kineme_formats::vocabulary::write(&bare.expect("a vocabulary"), "bare.kineme");
+    fs::write(at.join("bare.kineme"), bytes.expect("a file")).expect("a file");
+    done(
+        at,
+        "edit bare.kineme -o again.kineme --rename punch-out=jab",
+    );
+    for (name, told, listed) in [
+        ("bare.kineme", "recognition: not calibrated", vec![]),
+        (
+            "again.kineme",
+            "recognition: calibrated for encoder and filter\n",
+            recognisers,
+        ),
+    ] {
+        assert!(
+            done(at, &format!("show {name}")).out.contains(told),
+            "{name}"
+        );
+        let shown = json(at, &format!("show {name} --json"));
+        assert_eq!(
+            shown["calibrated"],
+            serde_json::Value::from(listed),
+            "{name}"
+        );
+    }
+    assert_eq!(
+        vocabulary(at, "again.kineme").calibrations(),
+        before.calibrations()
     );
 }

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use kineme::choreography::perform;
 use kineme::derivation::{Cut, Derivation, Derived, Segment, Stage};
 use kineme::math::statistics::{agreement, noise_as_singletons};
+use kineme::perception::calibrated;
 use kineme::segmentation::Segmenter;
 use kineme::{Motion, Vocabulary, body};
 use kineme_formats::output::{self, Existing};
@@ -81,6 +82,7 @@ pub fn run(seed: u64, watch: &mut dyn FnMut(Stage)) -> Result<Demo> {
     settings.seed = seed;
     let derived = settings.run(&motions, watch)?;
     let vocabulary = derived.vocabulary(&motions, &kineme::Modelling::default(), &|_| None)?;
+    let vocabulary = calibrated(vocabulary, None)?;
 
     let of_segment: Vec<Option<&Stroke>> = derived
         .segments

@@ -5,7 +5,7 @@ use kineme::primitive::ParameterSource;
 use kineme::{Primitive, Vocabulary};
 use serde::Serialize;
 
-use super::durations;
+use super::{calibrated, durations};
 use crate::failure::Failure;
 
 #[derive(Serialize)]
@@ -15,6 +15,8 @@ struct Document<'a> {
     primitives: Vec<PrimitiveLine<'a>>,
     behaviors: Vec<BehaviorLine<'a>>,
     transitions: Vec<TransitionLine<'a>>,
+    /// Recognisers whose calibration it holds.
+    calibrated: Vec<&'a str>,
 }
 
 #[derive(Serialize)]
@@ -123,6 +125,7 @@ pub(super) fn document(
             })
             .filter(|t| t.count > 0 && (shown(t.from) || shown(t.to)))
             .collect(),
+        calibrated: calibrated(vocabulary).collect(),
     };
     let text = serde_json::to_string(&document).map_err(|e| Failure::failed(e.to_string()))?;
     Ok(format!("{text}\n"))

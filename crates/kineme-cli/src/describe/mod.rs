@@ -31,6 +31,12 @@ pub fn one(
     }
 }
 
+/// The recognisers whose calibration a vocabulary holds.
+fn calibrated(vocabulary: &Vocabulary) -> impl Iterator<Item = &str> {
+    let all = vocabulary.calibrations().iter();
+    all.map(|c| c.recogniser.as_str())
+}
+
 /// Seconds that the shortest and the longest exemplar take; of cycles, one of them.
 fn durations(primitive: &Primitive) -> [f64; 2] {
     let pairs = primitive.exemplars().iter().zip(&primitive.fitted().used);

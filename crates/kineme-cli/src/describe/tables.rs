@@ -4,7 +4,7 @@ use kineme::interpolation::Method;
 use kineme::primitive::{LeaveOneOut, ParameterSource, Trial};
 use kineme::{Exemplar, Primitive, Vocabulary};
 
-use super::{durations, short};
+use super::{calibrated, durations, short};
 use crate::table::{Side, aligned};
 
 /// A method in words: what `--interpolation` calls it, and what it was smoothed by.
@@ -99,6 +99,7 @@ pub(super) fn tables(vocabulary: &Vocabulary, name: &str) -> String {
     text.push('\n');
     text.push_str(&judged(primitives));
     text.push_str(&behaviors(vocabulary));
+    text.push_str(&recognition(vocabulary));
     let notes: usize = primitives.iter().map(|p| p.notes().count()).sum();
     if notes > 0 {
         text.push_str(&format!(
@@ -157,6 +158,16 @@ fn behaviors(vocabulary: &Vocabulary) -> String {
     }
     let header = [("behavior", Side::Left), ("primitives", Side::Left)];
     format!("\n{}", aligned(&header, &rows))
+}
+
+/// Whom recognition need not be fitted for.
+fn recognition(vocabulary: &Vocabulary) -> String {
+    let names: Vec<&str> = calibrated(vocabulary).collect();
+    let told = match names.as_slice() {
+        [] => "not calibrated, fitted at every start; what `kineme edit` writes is".into(),
+        names => format!("calibrated for {}", names.join(" and ")),
+    };
+    format!("\nrecognition: {told}\n")
 }
 
 fn counted(n: usize, what: &str) -> String {

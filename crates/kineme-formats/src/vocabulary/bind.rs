@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use kineme::motion::landmark_dims;
-use kineme::primitive::{Group, Used};
+use kineme::primitive::{Calibration, Group, Used};
 use kineme::{
     Behavior, Exemplar, Motion, Primitive, Provenance, Root, Skeleton, Transitions, Vocabulary,
     body,
@@ -11,8 +11,8 @@ use kineme::{
 use nalgebra::Vector3;
 
 use super::{
-    BehaviorMeta, ExemplarMeta, ExemplarTensors, FitTensors, GroupMeta, PrimitiveMeta,
-    TransitionMeta, VocabularyFile, VocabularyMeta,
+    BehaviorMeta, CalibratedMeta, CalibrationMeta, ExemplarMeta, ExemplarTensors, FitTensors,
+    GroupMeta, PrimitiveMeta, TransitionMeta, VocabularyFile, VocabularyMeta,
 };
 use crate::error::{FormatError, Place, Result};
 
@@ -100,13 +100,20 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vocabulary> {
             primitive(meta, fit, movements, &skeleton)
         });
     let primitives = primitives.collect::<kineme::Result<_>>().map_err(refused)?;
-    Vocabulary::new(
+    let vocabulary = Vocabulary::new(
         Arc::clone(&skeleton),
         primitives,
         behaviors.collect(),
         transitions,
-    )
-    .map_err(refused)
+    );
+    let calibrations = file.meta.calibrations.into_iter().map(|c| Calibration {
+        recogniser: c.recogniser,
+        primitives: c.primitives.into_iter().map(|p| p.numbers).collect(),
+        shared: c.shared,
+    });
+    calibrations
+        .fold(vocabulary, |v, calibration| v?.calibrated(calibration))
+        .map_err(refused)
 }
 
 fn primitive(
@@ -198,7 +205,26 @@ fn file_of(vocabulary: &Vocabulary) -> VocabularyFile {
                 })
                 .filter(|t| t.count > 0)
                 .collect(),
+            calibrations: vocabulary
+                .calibrations()
+                .iter()
+                .map(|c| calibration_meta(c, primitives))
+                .collect(),
         },
+    }
+}
+
+fn calibration_meta(calibration: &Calibration, primitives: &[Primitive]) -> CalibrationMeta {
+    let numbers = primitives.iter().zip(&calibration.primitives);
+    CalibrationMeta {
+        recogniser: calibration.recogniser.clone(),
+        primitives: numbers
+            .map(|(primitive, numbers)| CalibratedMeta {
+                name: primitive.name().into(),
+                numbers: numbers.clone(),
+            })
+            .collect(),
+        shared: calibration.shared.clone(),
     }
 }
 

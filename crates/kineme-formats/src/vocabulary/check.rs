@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::{
-    ExemplarMeta, ExemplarTensors, FitMeta, FitTensors, MAX_EXEMPLARS, PrimitiveMeta, SourceMeta,
-    VocabularyFile, VocabularyMeta,
+    CalibrationMeta, ExemplarMeta, ExemplarTensors, FitMeta, FitTensors, MAX_EXEMPLARS,
+    PrimitiveMeta, SourceMeta, VocabularyFile, VocabularyMeta,
 };
 use crate::sheet::quoted;
 
@@ -154,7 +154,8 @@ impl VocabularyMeta {
             primitive.check()?;
         }
         self.check_behaviors()?;
-        self.check_transitions()
+        self.check_transitions()?;
+        self.check_calibrations()
     }
 
     fn check_behaviors(&self) -> Checked {
@@ -196,6 +197,41 @@ impl VocabularyMeta {
             })?;
         }
         Ok(())
+    }
+
+    fn check_calibrations(&self) -> Checked {
+        if self.calibrations.is_empty() {
+            return Ok(());
+        }
+        distinct(
+            "calibrated recognisers",
+            self.calibrations.iter().map(|c| &c.recogniser),
+        )?;
+        let mut all = self.calibrations.iter();
+        all.try_for_each(|c| c.check(&self.primitives))
+    }
+}
+
+impl CalibrationMeta {
+    fn check(&self, primitives: &[PrimitiveMeta]) -> Checked {
+        let at = |what: &str| format!("{what} in the calibration of {}", quoted(&self.recogniser));
+        let names = self.primitives.iter().map(|p| &p.name);
+        ensure(names.eq(primitives.iter().map(|p| &p.name)), || {
+            let expected = "every primitive of the vocabulary, in its order";
+            (at("other primitives"), expected.to_string())
+        })?;
+        let rows = self.primitives.iter().map(|p| &p.numbers);
+        let equal = self.primitives.windows(2);
+        ensure(
+            equal
+                .into_iter()
+                .all(|w| w[0].numbers.len() == w[1].numbers.len()),
+            || {
+                let expected = "equally many of each primitive".to_string();
+                (at("unequal numbers"), expected)
+            },
+        )?;
+        finite(|| at("a primitive"), rows.flatten().chain(&self.shared))
     }
 }
 

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::check::Flaw;
 use super::{
-    ExemplarTensors, FitTensors, PrimitiveMeta, PrincipalTensors, SourceMeta, VERSION,
-    VocabularyFile, VocabularyMeta,
+    ExemplarTensors, FitTensors, OLDEST_VERSION, PrimitiveMeta, PrincipalTensors, SourceMeta,
+    VERSION, VocabularyFile, VocabularyMeta,
 };
 use crate::error::{FormatError, Place, Result};
 
@@ -211,10 +211,12 @@ fn read_document(json: &str) -> std::result::Result<Document<VocabularyMeta>, Fl
     }
     let damaged = |e: serde_json::Error| (e.to_string(), "a vocabulary document".to_string());
     let Versioned { version } = serde_json::from_str(json).map_err(damaged)?;
-    if version != VERSION {
+    if !(OLDEST_VERSION..=VERSION).contains(&version) {
         let expected = match version {
-            1 => "version 2, which holds fitted primitives: make the vocabulary again".to_string(),
-            _ => format!("version {VERSION}, the only one this program reads"),
+            1 => format!(
+                "version {VERSION}, which holds fitted primitives: make the vocabulary again"
+            ),
+            _ => format!("version {OLDEST_VERSION} or {VERSION}, which this program reads"),
         };
         return Err((format!("format version {version}"), expected));
     }

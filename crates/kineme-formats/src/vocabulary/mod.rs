@@ -30,8 +30,11 @@ pub use fit::{
 
 use serde::{Deserialize, Serialize};
 
-/// The version of the document that this program writes, and the only one it reads.
-pub const VERSION: u64 = 2;
+/// The version of the document that this program writes.
+pub const VERSION: u64 = 3;
+
+/// The oldest version that it reads: as [`VERSION`], without calibrations.
+pub const OLDEST_VERSION: u64 = 2;
 
 /// The most exemplars a file may hold: the six digits of a tensor's name.
 pub const MAX_EXEMPLARS: usize = 1_000_000;
@@ -96,6 +99,9 @@ pub struct VocabularyMeta {
     pub behaviors: Vec<BehaviorMeta>,
     /// Which primitives were seen to follow which; pairs that never did are left out.
     pub transitions: Vec<TransitionMeta>,
+    /// What recognisers learned of the vocabulary, each recogniser once; none in version 2.
+    #[serde(default)]
+    pub calibrations: Vec<CalibrationMeta>,
 }
 
 /// A primitive.
@@ -164,6 +170,28 @@ pub struct TransitionMeta {
     pub to: String,
     /// Times seen, at least one.
     pub count: u32,
+}
+
+/// What a recogniser learned of the vocabulary by leaving exemplars out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CalibrationMeta {
+    /// Its name, such as `filter`; what the numbers mean is for it to know.
+    pub recogniser: String,
+    /// Every primitive of the vocabulary, in the same order, with equally many numbers each.
+    pub primitives: Vec<CalibratedMeta>,
+    /// Numbers of the whole, such as a temperature.
+    pub shared: Vec<f64>,
+}
+
+/// What a recogniser learned of one primitive.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CalibratedMeta {
+    /// The primitive's name.
+    pub name: String,
+    /// Finite numbers.
+    pub numbers: Vec<f64>,
 }
 
 impl VocabularyMeta {

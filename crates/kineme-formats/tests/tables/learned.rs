@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
 use kineme::choreography::{Key, perform};
-use kineme::primitive::{Group, Interpolation, Parameterisation};
+use kineme::primitive::{Calibration, Group, Interpolation, Parameterisation};
 use kineme::{
     Behavior, Exemplar, Modelling, Motion, Primitive, Provenance, Role, Root, Skeleton,
     Transitions, Vocabulary,
@@ -125,7 +125,18 @@ pub fn vocabulary() -> Vocabulary {
     let n = primitives.len();
     let mut counts = vec![0; n * n];
     (counts[1], counts[n], counts[n * n - 1]) = (5, 2, u32::MAX);
-    Vocabulary::new(body, primitives, behaviors, Transitions { counts, n }).unwrap()
+    let vocabulary = Vocabulary::new(body, primitives, behaviors, Transitions { counts, n });
+    let calibration = |recogniser: &str, shared: &[f64]| Calibration {
+        recogniser: recogniser.into(),
+        primitives: (0..n).map(|p| vec![p as f64 / 3.0, -0.0]).collect(),
+        shared: shared.to_vec(),
+    };
+    let vocabulary = vocabulary.unwrap();
+    let vocabulary = vocabulary.calibrated(calibration("voter", &[1e-300, 0.1 + 0.2]));
+    vocabulary
+        .unwrap()
+        .calibrated(calibration("filter", &[]))
+        .unwrap()
 }
 
 fn bits(numbers: &[f64]) -> Vec<u64> {
@@ -138,6 +149,11 @@ fn a_vocabulary_comes_back_bit_for_bit() {
     let bytes = write(&vocabulary, "v").unwrap();
     let back = read("v", &bytes).unwrap();
     assert_eq!(back, vocabulary);
+    for (a, b) in vocabulary.calibrations().iter().zip(back.calibrations()) {
+        assert_eq!(bits(&a.primitives.concat()), bits(&b.primitives.concat()));
+        assert_eq!(bits(&a.shared), bits(&b.shared));
+    }
+    assert_eq!(back.calibrations().len(), 2);
     assert_eq!(write(&back, "v").unwrap(), bytes);
     for (p, q) in vocabulary.primitives().iter().zip(back.primitives()) {
         let name = p.name();

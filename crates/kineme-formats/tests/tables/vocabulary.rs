@@ -1,8 +1,9 @@
 use kineme_formats::Place;
 use kineme_formats::vocabulary::{
-    BehaviorMeta, ErrorMeta, ExemplarMeta, ExemplarTensors, FitMeta, FitTensors, GroupMeta,
-    KernelMeta, MethodMeta, ParameterMeta, PrimitiveMeta, PrincipalTensors, SourceMeta, TailMeta,
-    TransitionMeta, TrialMeta, VocabularyFile, VocabularyMeta,
+    BehaviorMeta, CalibratedMeta, CalibrationMeta, ErrorMeta, ExemplarMeta, ExemplarTensors,
+    FitMeta, FitTensors, GroupMeta, KernelMeta, MethodMeta, ParameterMeta, PrimitiveMeta,
+    PrincipalTensors, SourceMeta, TailMeta, TransitionMeta, TrialMeta, VocabularyFile,
+    VocabularyMeta,
 };
 
 use crate::refused;
@@ -61,6 +62,19 @@ fn fit(source: SourceMeta, parameters: &[&str]) -> FitMeta {
             mean_m: 1e-300,
         }),
         notes: vec!["\"so\"".to_string()],
+    }
+}
+
+/// So many numbers of each primitive of the example.
+fn calibration(recogniser: &str, numbers: usize) -> CalibrationMeta {
+    let calibrated = |name: &str| CalibratedMeta {
+        name: name.to_string(),
+        numbers: [0.1 + 0.2, -0.0, 1e-300][..numbers].to_vec(),
+    };
+    CalibrationMeta {
+        recogniser: recogniser.to_string(),
+        primitives: ["group-01", "wave / \"out\""].map(calibrated).to_vec(),
+        shared: vec![1.0 / 3.0, -0.0],
     }
 }
 
@@ -124,6 +138,7 @@ pub fn example() -> VocabularyFile {
                 to: "wave / \"out\"".to_string(),
                 count: 4,
             }],
+            calibrations: vec![calibration("filter", 2), calibration("voter", 0)],
         },
         exemplars: vec![movement(4, 0.0), movement(1, 0.5), movement(2, 7.0)],
         fits: vec![
@@ -149,6 +164,7 @@ fn a_vocabulary_survives_bit_for_bit() {
     assert!(back.fits[0].points[3].is_sign_negative());
     let adverbs = back.meta.primitives[0].exemplars[0].adverbs.as_ref();
     assert!(adverbs.unwrap()[1].is_sign_negative());
+    assert!(back.meta.calibrations[0].primitives[1].numbers[1].is_sign_negative());
     assert_eq!(back.write("v.kineme").unwrap(), bytes);
     assert_eq!(file.write("other").unwrap(), bytes);
 }
@@ -341,6 +357,51 @@ fn invalid_vocabularies_are_not_written() {
             |v| v.meta.transitions.extend_from_within(..),
             "4 times",
         ),
+        (
+            "recogniser without a name",
+            |v| v.meta.calibrations[0].recogniser.clear(),
+            "calibrated recognisers without a name",
+        ),
+        (
+            "recogniser twice",
+            |v| v.meta.calibrations.extend_from_within(..1),
+            "`filter` twice",
+        ),
+        (
+            "calibration of a stranger",
+            |v| v.meta.calibrations[0].primitives[1].name = "x".to_string(),
+            "other primitives in the calibration of `filter`",
+        ),
+        (
+            "calibration in another order",
+            |v| v.meta.calibrations[1].primitives.reverse(),
+            "other primitives in the calibration of `voter`",
+        ),
+        (
+            "calibration of some",
+            |v| drop(v.meta.calibrations[0].primitives.pop()),
+            "other primitives",
+        ),
+        (
+            "calibration of one twice",
+            |v| v.meta.calibrations[0].primitives.extend_from_within(1..),
+            "other primitives",
+        ),
+        (
+            "calibration of unequal numbers",
+            |v| v.meta.calibrations[0].primitives[1].numbers.truncate(1),
+            "unequal numbers",
+        ),
+        (
+            "calibration that is not finite",
+            |v| v.meta.calibrations[0].primitives[1].numbers[0] = f64::NAN,
+            "calibration of `filter` with a number that is not finite",
+        ),
+        (
+            "shared number that is not finite",
+            |v| v.meta.calibrations[1].shared[0] = f64::INFINITY,
+            "calibration of `voter` with a number that is not finite",
+        ),
     ];
     for (what, damage, word) in cases {
         let mut file = example();
@@ -356,7 +417,10 @@ fn invalid_vocabularies_are_not_written() {
 
 /// The container with its header rewritten.
 fn rewritten(from: &str, to: &str) -> Vec<u8> {
-    let bytes = example().write("v.kineme").unwrap();
+    rewritten_of(&example().write("v.kineme").unwrap(), from, to)
+}
+
+fn rewritten_of(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
     let length = u64::from_le_bytes(bytes[..8].try_into().unwrap()) as usize;
     let header = std::str::from_utf8(&bytes[8..8 + length]).unwrap();
     assert!(header.contains(from), "{from} in {header}");
@@ -365,6 +429,17 @@ fn rewritten(from: &str, to: &str) -> Vec<u8> {
     out.extend_from_slice(header.as_bytes());
     out.extend_from_slice(&bytes[8 + length..]);
     out
+}
+
+#[test]
+fn a_file_of_version_2_has_no_calibrations() {
+    let mut uncalibrated = example();
+    uncalibrated.meta.calibrations.clear();
+    let bytes = uncalibrated.write("v.kineme").unwrap();
+    let bytes = rewritten_of(&bytes, ",\\\"calibrations\\\":[]", "");
+    let old = rewritten_of(&bytes, "\\\"version\\\":3", "\\\"version\\\":2");
+    let back = VocabularyFile::parse("v.kineme", &old).unwrap();
+    assert_eq!(back, uncalibrated);
 }
 
 #[test]
@@ -393,15 +468,15 @@ fn damaged_files_are_refused() {
         ),
         (
             "newer",
-            rewritten("\\\"version\\\":2", "\\\"version\\\":3"),
-            "format version 3",
+            rewritten("\\\"version\\\":3", "\\\"version\\\":4"),
+            "format version 4",
         ),
         (
             "older",
-            rewritten("\\\"version\\\":2", "\\\"version\\\":1"),
+            rewritten("\\\"version\\\":3", "\\\"version\\\":1"),
             "format version 1",
         ),
-        ("no version", rewritten("\\\"version\\\":2,", ""), "version"),
+        ("no version", rewritten("\\\"version\\\":3,", ""), "version"),
         ("degrees", rewritten("\\\"rad\\\"", "\\\"deg\\\""), "units"),
         (
             "new field",
@@ -453,6 +528,16 @@ fn damaged_files_are_refused() {
             "primitive",
             rewritten("group-01", "group-02"),
             "`group-01` in behavior",
+        ),
+        (
+            "calibration's field",
+            rewritten("\\\"recogniser\\\"", "\\\"recognizer\\\""),
+            "unknown field `recognizer`",
+        ),
+        (
+            "calibration of no number",
+            rewritten("\\\"shared\\\":[0.3", "\\\"shared\\\":[null,0.3"),
+            "null",
         ),
         (
             "infinite",

@@ -1,5 +1,6 @@
 //! Floor 5: recognising movement with the same vocabulary that makes it (paper, section V).
 
+mod calibration;
 mod checked;
 pub mod encoding;
 mod filter;
@@ -9,6 +10,7 @@ mod parts;
 mod rows;
 mod spans;
 
+pub use calibration::calibrated;
 pub use filter::{Filter, FilterSettings};
 pub use frame::{Frame, FrameSettings};
 pub use paper::{Paper, PaperSettings};

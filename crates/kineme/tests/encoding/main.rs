@@ -1,5 +1,6 @@
 //! Trajectory encoding: its laws, on movements made by hand.
 
+mod calibrated;
 mod vocabulary;
 
 use kineme::perception::encoding::{

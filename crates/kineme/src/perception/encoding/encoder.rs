@@ -77,15 +77,19 @@ pub(super) struct Verdict {
 }
 
 impl<'a> Encoder<'a> {
-    /// An encoder over a vocabulary, its rejection fitted to the exemplars: a second of work or two for a hundred of
-    /// them, which [`Self::with_rejection`] saves.
+    /// An encoder over a vocabulary. Its rejection is the one kept with the vocabulary, where that was fitted with such
+    /// settings, or else fitted now to the exemplars: a second of work or two for a hundred of them.
     ///
     /// # Errors
+    /// When what is kept with the vocabulary is no rejection.
     /// When a setting is outside of its range, the vocabulary has no primitive, or its body lacks an effector or
     /// shoulders.
     pub fn new(vocabulary: &'a Vocabulary, settings: &EncodingSettings) -> Result<Self> {
         let rows = checked_rows(vocabulary, settings)?;
-        let rejection = Rejection::fit(vocabulary, &rows, settings)?;
+        let rejection = match Rejection::kept(vocabulary, settings)? {
+            Some(kept) => kept,
+            None => Rejection::fit(vocabulary, &rows, settings, &[])?,
+        };
         Self::of(vocabulary, settings, rows, rejection)
     }
 
@@ -341,7 +345,10 @@ impl<'a> Encoder<'a> {
     }
 }
 
-fn checked_rows(vocabulary: &Vocabulary, settings: &EncodingSettings) -> Result<Vec<Row>> {
+pub(super) fn checked_rows(
+    vocabulary: &Vocabulary,
+    settings: &EncodingSettings,
+) -> Result<Vec<Row>> {
     settings.check()?;
     if vocabulary.primitives().is_empty() {
         return Err(Error::invalid("an encoder needs a primitive"));

@@ -1,13 +1,13 @@
 //! Trajectory encoding (paper, section V-B): movement recognised from the paths of hands, feet or head alone, and said
 //! again in the joints of the vocabulary's body.
 
+mod calibration;
 mod chains;
 mod cost;
 mod encoded;
 mod encoder;
 mod extrapolation;
 mod heading;
-
 mod listener;
 mod literal;
 mod literally;

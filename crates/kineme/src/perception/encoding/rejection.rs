@@ -128,8 +128,14 @@ impl Rejection {
     }
 
     /// Fits to the exemplars of a vocabulary, at most 120 of them, evenly chosen. Who performed an exemplar is not known;
-    /// the nearer half of its primitive's others stands for the same person and is left out.
-    pub(super) fn fit(vocabulary: &Vocabulary, rows: &[Row], s: &EncodingSettings) -> Result<Self> {
+    /// the nearer half of its primitive's others stands for the same person and is left out. A
+    /// primitive's limit that is given stays as it is.
+    pub(super) fn fit(
+        vocabulary: &Vocabulary,
+        rows: &[Row],
+        s: &EncodingSettings,
+        given: &[Option<f64>],
+    ) -> Result<Self> {
         let primitives = vocabulary.primitives().len();
         let kept = rows.len().min(MOST_CASES);
         let cases: Vec<Case> = (0..kept)
@@ -149,7 +155,11 @@ impl Rejection {
         // Few exemplars tell a quantile badly: half-way to the usual one.
         let limits: Vec<f64> = limits
             .iter()
-            .map(|l| l.map_or(usual, |l| (l.max(1e-3) * usual).sqrt()))
+            .enumerate()
+            .map(|(p, l)| {
+                let fitted = l.map_or(usual, |l| (l.max(1e-3) * usual).sqrt());
+                given.get(p).copied().flatten().unwrap_or(fitted)
+            })
             .collect();
         let limit = quantile(&own.concat(), ADMITTED).unwrap_or(usual).max(1e-3);
         let scores = |evidence: Option<&Evidence>| evidence.and_then(|e| e.scores(&limits));
