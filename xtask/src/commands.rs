@@ -163,9 +163,10 @@ fn seconds(time: Duration) -> String {
 /// The line below which the tables of a document stand.
 const TABLES: &str = "<!-- tables: cargo xtask repro -->";
 /// Documents with tables, and the examples of `kineme-paper` that print them.
-const REPRODUCED: [(&str, &str); 2] = [
+const REPRODUCED: [(&str, &str); 3] = [
     ("docs/derivation.md", "derivation_table"),
     ("docs/model.md", "model_table"),
+    ("docs/perception.md", "recognition_table"),
 ];
 
 /// Computes the tables of the documents again and puts them below their marks.

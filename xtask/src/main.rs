@@ -16,8 +16,8 @@ cargo xtask COMMAND: what those who work on kineme run
                              (the table in ARCHITECTURE.md), length of files, paths named in documents,
                              the code map, the CHANGELOG's heading, paths of somebody's machine
   demo [-- ARGS]             kineme demo ARGS, in release
-  repro [CORPUS]             the tables of docs/derivation.md and docs/model.md, computed again from a corpus of
-                             labelled motion (default: KINEME_DATA/mocap, else ../shared/data/mocap)
+  repro [CORPUS]             the tables of docs/derivation.md, docs/model.md and docs/perception.md, computed again from
+                             a corpus of labelled motion (default: KINEME_DATA/mocap, else ../shared/data/mocap)
   fuzz [TARGET] [SECONDS]    run one fuzz target, or each in turn, for so long (60 s); wants cargo-fuzz
 
 CI runs `cargo xtask test` and nothing else: what passes here passes there.

@@ -12,5 +12,6 @@ pub mod model_table;
 pub mod models;
 pub mod out_and_back;
 pub mod postures;
+pub mod recognition;
 pub mod sets;
 pub mod table;

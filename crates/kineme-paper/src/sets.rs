@@ -30,6 +30,8 @@ pub struct IndexRow {
     pub file: String,
     /// Its format.
     pub format: String,
+    /// Who moves, or in which style.
+    pub subject: String,
     /// Its class.
     pub label: String,
     /// Remarks, among them `content=...`.
@@ -71,18 +73,20 @@ pub fn index(corpus: &Path) -> Result<Vec<IndexRow>> {
         column("archive")?,
         column("file")?,
         column("format")?,
+        column("subject")?,
         column("label")?,
         column("notes")?,
     ];
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record?;
-        let [archive, file, format, label, notes] =
+        let [archive, file, format, subject, label, notes] =
             columns.map(|c| record.get(c).unwrap_or_default().to_string());
         rows.push(IndexRow {
             archive,
             file,
             format,
+            subject,
             label,
             notes,
         });

@@ -149,7 +149,7 @@ fn continuous(
     let picked: Vec<&IndexRow> = rows.iter().filter(of).collect();
     let asf = "cmu-asfamc.zip/cmu-asfamc/02/02.asf";
     let set = load(corpus, &picked, body, Some(asf), &|r| r.file.clone())?;
-    let truth = annotations(corpus, &trials)?;
+    let (truth, _) = annotations(corpus, &trials)?;
     writeln!(
         out,
         "\n### CMU exercises 13_29 to 13_31, continuous, scored ten times a second\n\n| method | ARI level 1 | ARI level 2 | segments | groups | behaviours | noise |\n| --- | --- | --- | --- | --- | --- | --- |"
@@ -225,8 +225,11 @@ fn continuous(
     Ok(())
 }
 
-/// The annotation of each trial, from `mocap6-labels.csv`.
-fn annotations(corpus: &Path, trials: &[&str]) -> Result<Vec<Annotation>> {
+/// The annotation of each trial, from `mocap6-labels.csv`, and the names of its classes.
+pub(crate) fn annotations(
+    corpus: &Path,
+    trials: &[&str],
+) -> Result<(Vec<Annotation>, Vec<String>)> {
     let mut reader = csv::Reader::from_path(corpus.join("mocap6-labels.csv"))?;
     let mut truth: Vec<Annotation> = trials
         .iter()
@@ -248,5 +251,5 @@ fn annotations(corpus: &Path, trials: &[&str]) -> Result<Vec<Annotation>> {
         });
         truth[t].labels.push(class);
     }
-    Ok(truth)
+    Ok((truth, names))
 }

@@ -1,0 +1,117 @@
+//! All tables of `docs/perception.md`, one after another.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::clips::{Asked, METHODS, lines, write_clips};
+use super::corpora::{BANDAI_NAMCO, HDM05, MSR, Part, UTD, corpora};
+use super::damage::{costs, write_costs};
+use super::exercises::Exercises;
+use super::few_shots::few_shots;
+use super::known::Method;
+use super::open_set::{rejections, write_rejections};
+use super::peers::Peers;
+use super::streams::{dances, hear, write_streams};
+use super::summary::{verdict, write_lines};
+use super::trials::SHOTS;
+use crate::sets::Result;
+
+/// One clip in so many is asked damaged.
+const DAMAGED: usize = 8;
+/// What the calibration error should be at most.
+const CALIBRATED: f64 = 0.05;
+
+/// Recognises every set of a corpus and writes what came of it, as Markdown. `watch` is told what is being done, and the
+/// tables one by one as they are made.
+///
+/// # Errors
+/// When the corpus lacks a file or a step fails.
+pub fn perception_tables(corpus: &Path, watch: &mut dyn FnMut(&str)) -> Result<String> {
+    let body = Arc::new(kineme::ares()?);
+    let peers = Peers::kept()?;
+    watch("reading");
+    let sets = corpora(corpus, &body, &[UTD, MSR, HDM05, BANDAI_NAMCO], Part::WHOLE)?;
+    let (mut whole, mut hands) = (Vec::new(), Vec::new());
+    let mut rest = Vec::new();
+    let mut details = String::new();
+    let mut calibration = Vec::new();
+    for of in &sets {
+        watch(&format!("{}: whole clips", of.name));
+        let asked = Asked::of(of, &METHODS)?;
+        let [all, by_hands] = lines(of, &asked)?;
+        whole.push(all);
+        hands.push(by_hands);
+        calibration.push((of.name, asked.calibration_error(Method::Filter)?));
+        tell(&mut details, watch, |t| write_clips(t, of, &asked))?;
+    }
+    watch("exercises");
+    rest.push(Exercises::read(corpus, &body)?.line()?);
+    watch(&format!("{:?}", rest.last()));
+    let pair = [Method::Filter, Method::Dtw];
+    let learned_few: Vec<_> = sets
+        .iter()
+        .filter(|c| [UTD, HDM05].contains(&c.name))
+        .collect();
+    for of in &learned_few {
+        watch(&format!("{}: half of the classes unknown", of.name));
+        let all = rejections(of, &pair)?;
+        let write = |t: &mut String| write_rejections(t, of, &pair, &all);
+        rest.extend(tell(&mut details, watch, write)?);
+    }
+    for of in &learned_few {
+        watch(&format!("{}: few exemplars", of.name));
+        for shots in SHOTS {
+            rest.push(few_shots(of, shots, pair[0], pair[1])?);
+            watch(&format!("{:?}", rest.last()));
+        }
+    }
+    let dances = dances(corpus, &body)?;
+    let listeners = [Method::Filter, Method::Frame, Method::Dtw];
+    for of in sets.iter().filter(|c| c.name != BANDAI_NAMCO) {
+        watch(&format!("{}: streams", of.name));
+        let heard = hear(of, &dances, &listeners)?;
+        let write = |t: &mut String| write_streams(t, of, &listeners, &heard);
+        tell(&mut details, watch, write)?;
+    }
+    let hurt = [Method::Filter, Method::Frame, Method::Paper, Method::Dtw];
+    for of in &learned_few {
+        watch(&format!("{}: damaged", of.name));
+        let right = costs(of, &hurt, DAMAGED)?;
+        tell(&mut details, watch, |t| write_costs(t, of, &hurt, &right))?;
+    }
+    whole.extend(rest);
+    let mut out = String::from("\n### Aims: the whole body, `filter`\n");
+    write_lines(&mut out, "filter", "1NN-DTW", &whole, &peers)?;
+    writeln!(out, "\n### Aims: hands alone, `encode`")?;
+    write_lines(&mut out, "encode", "1NN-DTW, hands", &hands, &peers)?;
+    writeln!(
+        out,
+        "\n### Aims: calibration error of `filter`, rest and none among the answers\n\n| set | ECE | aim, at most | |\n| --- | --- | --- | --- |"
+    )?;
+    for (name, ece) in calibration {
+        writeln!(
+            out,
+            "| {name} | {ece:.3} | {CALIBRATED} | {} |",
+            verdict(-ece, Some(-CALIBRATED))
+        )?;
+    }
+    if !peers.made_by.is_empty() {
+        writeln!(out, "\nMiniRocket: {}.", peers.made_by)?;
+    }
+    out.push_str(&details);
+    Ok(out)
+}
+
+/// Adds what `write` writes to the details and tells it.
+fn tell<T>(
+    details: &mut String,
+    watch: &mut dyn FnMut(&str),
+    write: impl FnOnce(&mut String) -> Result<T>,
+) -> Result<T> {
+    let mut text = String::new();
+    let made = write(&mut text)?;
+    watch(&text);
+    details.push_str(&text);
+    Ok(made)
+}
