@@ -164,7 +164,7 @@ fn behaviors(vocabulary: &Vocabulary) -> String {
 fn recognition(vocabulary: &Vocabulary) -> String {
     let names: Vec<&str> = calibrated(vocabulary).collect();
     let told = match names.as_slice() {
-        [] => "not calibrated, fitted at every start; what `kineme edit` writes is".into(),
+        [] => "not calibrated, usual numbers hold; what `kineme edit` writes is calibrated".into(),
         names => format!("calibrated for {}", names.join(" and ")),
     };
     format!("\nrecognition: {told}\n")
