@@ -23,7 +23,7 @@ const LEAST_CASES: usize = 8;
 /// The share of the known that limits admit.
 const ADMITTED: f64 = 0.95;
 /// The share of the known that is kept, should even odds keep less: people differ more than exemplars tell.
-const KEPT: f64 = 0.9;
+const KEPT: f64 = 0.97;
 /// The weight of a limit alone, where nothing can be fitted: probability 0.9 at a cost of 0.7 of the limit.
 const LIMIT_WEIGHT: f64 = 6.0;
 /// The cost that bounds a primitive where no exemplar can be held against another, in units.
