@@ -13,6 +13,7 @@ use serde::Serialize;
 
 use crate::args::{EncodeArgs, EncodeMethod, Global, Written};
 use crate::failure::{Failure, complain, print};
+use crate::json::line;
 use crate::outputs::{existing, mirrored, refuse_existing, unwritten};
 use crate::source::{Source, print_warnings};
 use crate::vocabularies::read;
@@ -77,9 +78,7 @@ pub fn run(args: &EncodeArgs, global: &Global) -> Result<u8, Failure> {
     let mut lines = String::new();
     for told in &read.items {
         if global.json {
-            let line = serde_json::to_string(told).map_err(|e| Failure::failed(e.to_string()))?;
-            lines.push_str(&line);
-            lines.push('\n');
+            lines.push_str(&line(told)?);
         } else {
             lines.push_str(&text(told));
         }

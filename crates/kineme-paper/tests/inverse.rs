@@ -127,7 +127,7 @@ fn answers_are_probabilities_and_ignore_the_order_of_the_vocabulary() {
 }
 
 #[test]
-fn one_lost_or_broken_joint_does_not_hide_the_movement() {
+fn one_lost_joint_does_not_hide_the_movement() {
     let vocabulary = &VOCABULARIES[0];
     let filter = filter(vocabulary);
     let motion = jab(vocabulary);
@@ -172,7 +172,7 @@ fn what_is_unseen_does_not_matter() {
 }
 
 #[test]
-fn a_jab_played_backward_is_no_jab() {
+fn a_punch_played_backward_is_no_punch() {
     let vocabulary = &VOCABULARIES[1];
     let filter = filter(vocabulary);
     for (k, primitive) in vocabulary.primitives().iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
+use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use pulp::{Arch, Simd, WithSimd};
 
 use super::features::Feature;
@@ -40,14 +40,15 @@ struct Whitened {
     transform: DMatrix<f64>,
     /// Directions x states: the rows' moments, whitened; a direction's numbers lie together.
     states: Vec<f64>,
-    /// A broad Gaussian over all moments of all rows: whitened mean, deviations in its own directions.
+    /// A broad Gaussian over all moments of all rows: mean and variances along the directions.
     broad: Broad,
 }
 
 #[derive(Debug, Clone)]
 struct Broad {
     mean: DVector<f64>,
-    factor: Cholesky<f64, Dyn>,
+    /// In these directions the rows vary independently.
+    variances: DVector<f64>,
     log_det: f64,
 }
 
@@ -115,12 +116,11 @@ impl Emission {
                 factor: -0.5 * part.trust_per_sec,
                 sums: &mut fit.states,
             });
-            let off = part
-                .broad
-                .factor
-                .l()
-                .solve_lower_triangular(&(&z - &part.broad.mean));
-            let squared = off.map_or(0.0, |v| v.norm_squared());
+            let off = &z - &part.broad.mean;
+            let squared = off
+                .component_mul(&off)
+                .component_div(&part.broad.variances)
+                .sum();
             fit.broad -= 0.5 * part.trust_per_sec * (squared + part.broad.log_det);
         }
     }
@@ -163,21 +163,19 @@ impl Whitened {
         for mut column in reduced.column_iter_mut() {
             column += &mean;
         }
-        // In these directions the rows vary independently; an observation is as white as ever about them.
-        let broad = DMatrix::from_diagonal(&DVector::from_iterator(
+        // An observation is as white as ever about the rows.
+        let variances = DVector::from_iterator(
             order.len(),
             order.iter().map(|&k| eigen.eigenvalues[k].max(0.0) + 1.0),
-        ));
-        let broad =
-            Cholesky::new(broad).ok_or_else(|| Error::invalid("rows that are not finite"))?;
+        );
         Ok(Self {
             trust_per_sec: part.trust_per_sec,
             known,
             transform: basis * inverse,
             states: reduced.transpose().as_slice().to_vec(),
             broad: Broad {
-                log_det: broad.ln_determinant(),
-                factor: broad,
+                log_det: variances.iter().map(|v| v.ln()).sum(),
+                variances,
                 mean,
             },
         })

@@ -42,14 +42,15 @@ pub(super) struct Learned {
 }
 
 impl Learned {
-    /// What holds as long as nothing was learned: means of real vocabularies.
+    /// What holds as long as nothing was learned: temperature and limit as vocabularies of real people have them (28 to
+    /// 56, and about 200), and nothing by which the unknown is told but the stream.
     pub fn usual(primitives: usize) -> Self {
         Self {
-            temperature: 8.0,
+            temperature: 40.0,
             scores: [[0.0, 1.0, 0.0]; SCORES],
             bias: -2.0,
             unknown_per_sec: 0.0,
-            limits: vec![300.0; primitives],
+            limits: vec![200.0; primitives],
         }
     }
 

@@ -86,8 +86,9 @@ fn rows_cycle(rows: &[Row], primitive: usize) -> bool {
     rows.iter().any(|r| r.primitive == primitive && r.cyclic)
 }
 
-/// The place of a posture (coordinates that were not seen are no numbers). Where parameters have a meaning, belief and posture are joined: the parameters and phase that
-/// are most probable given both (Gauss and Newton), with the deviations of the quadratic there (Laplace).
+/// The place of a posture (coordinates that were not seen are no numbers). Where parameters have a meaning, belief and
+/// posture are joined: the parameters and phase that are most probable given both (Gauss and Newton), with the
+/// deviations of the quadratic there (Laplace).
 pub(super) fn place(
     primitive: &Primitive,
     index: usize,

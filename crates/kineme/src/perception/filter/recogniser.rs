@@ -120,8 +120,8 @@ impl<'v> Filter<'v> {
         let mut sight = Sight::new(&model.layout, &model.bounds);
         let frames = self.looked_at(seen);
         let moments: Vec<Moment> = frames.map(|f| sight.see(&seen.at(f))).collect();
-        let mut features = model.of_clip(moments);
-        let unknown = lasting(&mut features);
+        let features = model.of_clip(moments);
+        let unknown = lasting(&features);
         let marginal: Emission;
         let emission = match unknown.contains(&true) {
             true => {
@@ -222,7 +222,7 @@ impl Share {
 }
 
 /// Numbers that are unknown most of the time are unknown for good; what is missing now and then was bridged.
-fn lasting(features: &mut [(Feature, f64)]) -> Vec<bool> {
+fn lasting(features: &[(Feature, f64)]) -> Vec<bool> {
     let dims = features.first().map_or(0, |(f, _)| f.values.len());
     let count = |i: usize| {
         let unknown = features

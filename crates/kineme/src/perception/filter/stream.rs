@@ -280,9 +280,8 @@ impl Filter<'_> {
             }
             _ => None,
         };
-        let known = posterior.primitives.iter().sum::<f64>() + posterior.rest;
         Ok(Reading {
-            novelty: 2.0 * posterior.none / (posterior.none + known),
+            novelty: 2.0 * posterior.none,
             posterior,
             place,
         })
