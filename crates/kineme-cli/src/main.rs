@@ -17,6 +17,7 @@ mod info;
 mod json;
 mod labelled;
 mod learn;
+mod observed;
 mod outputs;
 mod progress;
 mod recognisers;

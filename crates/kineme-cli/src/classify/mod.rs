@@ -4,11 +4,12 @@ mod stream;
 mod told;
 
 use kineme::Vocabulary;
-use kineme::primitive::{Observations, Recogniser, readings};
+use kineme::primitive::{Recogniser, readings};
 use kineme_formats::input::Entry;
 
 use crate::args::{ClassifyArgs, Global};
 use crate::failure::{Failure, complain, print};
+use crate::observed::observe;
 use crate::recognisers::classifier;
 use crate::source::{Source, print_warnings};
 use crate::vocabularies::read;
@@ -92,7 +93,7 @@ fn answer(
     entry: &Entry,
     frames: bool,
 ) -> Result<Answered, Failure> {
-    let (seen, warnings) = observe(recogniser.vocabulary(), source, entry)?;
+    let (seen, warnings) = observe(recogniser.vocabulary().body(), source, entry)?;
     let motion = entry.name().to_owned();
     let blamed = |e: kineme::Error| Failure::from(e).at(&motion);
     let (mut text, mut rows, mut is_known) = (String::new(), Vec::new(), false);
@@ -119,20 +120,6 @@ fn answer(
         text,
         rows,
     })
-}
-
-/// A motion as the vocabulary's body does it. In a table of this very body what is missing stays so.
-fn observe(
-    vocabulary: &Vocabulary,
-    source: &Source,
-    entry: &Entry,
-) -> Result<(Observations, Vec<String>), Failure> {
-    if let Some(observed) = entry.read_observed(vocabulary.body())? {
-        return Ok((observed.seen, observed.warnings));
-    }
-    let recording = source.read(entry)?;
-    let (motion, warnings) = source.retarget(&recording, vocabulary.body())?;
-    Ok((Observations::complete(motion), warnings))
 }
 
 /// What a person might do next.

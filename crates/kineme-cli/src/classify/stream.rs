@@ -3,26 +3,14 @@
 use std::io::stdin;
 
 use kineme::primitive::Recogniser;
-use kineme_formats::tables::observed::ObservedRows;
 
 use super::told::Teller;
-use crate::failure::{Failure, complain, offer};
-
-/// What stands for the motion of a stream.
-const NAME: &str = "-";
-/// Joints that are named in a note.
-const NAMED: usize = 5;
+use crate::failure::{Failure, offer};
+use crate::observed::{STREAM, open_stream};
 
 /// Answers rows until there are no more, or nobody reads the answers.
 pub(super) fn run(recogniser: &dyn Recogniser, teller: &Teller) -> Result<u8, Failure> {
-    let body = recogniser.vocabulary().body();
-    let mut rows = ObservedRows::open(NAME, stdin().lock(), body).map_err(|e| {
-        Failure::from(e).hint(format!(
-            "`kineme convert INPUT - --body {} --to csv` writes such a table; other motions are read from files",
-            body.name()
-        ))
-    })?;
-    tell_unseen(&rows.unseen());
+    let mut rows = open_stream(stdin().lock(), recogniser.vocabulary().body())?;
     let mut listener = recogniser.listen();
     if !offer(teller.frames_columns().as_bytes())? {
         return Ok(0);
@@ -31,24 +19,9 @@ pub(super) fn run(recogniser: &dyn Recogniser, teller: &Teller) -> Result<u8, Fa
     while let Some(seen) = rows.next_row()? {
         let reading = listener.hear(&seen)?;
         let times = (*since.get_or_insert(seen.secs), seen.secs);
-        if !offer(teller.frame(NAME, times, &reading)?.as_bytes())? {
+        if !offer(teller.frame(STREAM, times, &reading)?.as_bytes())? {
             break;
         }
     }
     Ok(0)
-}
-
-fn tell_unseen(joints: &[&str]) {
-    if joints.is_empty() {
-        return;
-    }
-    let more = match joints.len().saturating_sub(NAMED) {
-        0 => String::new(),
-        n => format!(" and {n} more"),
-    };
-    let named: Vec<&str> = joints.iter().copied().take(NAMED).collect();
-    complain(&format!(
-        "note: never seen, for the table has not all their columns: {}{more}",
-        named.join(", ")
-    ));
 }
