@@ -1,9 +1,12 @@
-//! Floor 5: moving a body along courses: entry from any posture, transitions without a jump, walking about.
+//! Floor 5: moving a body: along courses, from any posture and without a jump; and by behaviours that share it.
 
 mod clock;
 mod entry;
 mod manner;
+mod mask;
 mod offset;
+mod plan;
+mod robot;
 mod state;
 mod synthesis;
 mod synthesizer;
@@ -11,6 +14,8 @@ mod synthesizer;
 pub use entry::Entry;
 pub use manner::{Manner, Pace};
 pub use offset::Inertialization;
+pub use plan::{Aiming, Arbitration, Fault, Place, Plan, Planned, Rule};
+pub use robot::{Effort, KinematicRobot, Robot, Sensed};
 pub use state::State;
 pub use synthesis::{Synthesis, Synthesized};
 pub use synthesizer::{Command, Synthesizer};

@@ -5,14 +5,18 @@
 
 mod anatomy;
 mod fit;
+mod fitting;
 mod guess;
+mod hinges;
 mod landmarks;
 mod limb;
 mod orientation;
 mod own;
 mod profile;
+mod transfer;
 
 pub use anatomy::Anatomy;
 pub use fit::{Retargeted, retarget, transfer};
 pub use landmarks::Landmarks;
 pub use profile::{Profile, REQUIRED, RoleMap};
+pub use transfer::{Transfer, Transferred};
