@@ -38,15 +38,25 @@ impl Entry {
         }
     }
 
-    /// The phase at which a body that moves so joins the course, run through at its own pace times `speed`.
-    pub(super) fn phase(&self, course: &Course, now: &Moving, speed: f64) -> f64 {
+    /// The phase at which a body that moves so joins the course, run through at its own pace times `speed`;
+    /// coordinates that do not join it do not count.
+    pub(super) fn phase(
+        &self,
+        course: &Course,
+        now: &Moving,
+        speed: f64,
+        joining: Option<&[bool]>,
+    ) -> f64 {
         let Entry::Matched { latest } = *self else {
             return 0.0;
         };
         let latest = if course.is_cyclic() { 1.0 } else { latest };
         let joints = now.values.len() - 1;
         let cost = |phase: f64| -> f64 {
-            let goal = Moving::along(&course.sample(phase), speed);
+            let mut goal = Moving::along(&course.sample(phase), speed);
+            if let Some(joining) = joining {
+                goal.elsewhere_as(now, Some(joining));
+            }
             let apart = |a: &[f64], b: &[f64]| -> f64 {
                 let pairs = a[..joints].iter().zip(&b[..joints]);
                 pairs.map(|(x, y)| (x - y) * (x - y)).sum()

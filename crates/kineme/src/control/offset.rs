@@ -13,7 +13,7 @@ use super::state::Moving;
 use crate::error::{Error, Result};
 
 /// The greatest slope of A: how much faster than its mean a difference decays at most.
-const STEEPEST: f64 = 1.875;
+pub(super) const STEEPEST: f64 = 1.875;
 /// Differences below this (radians, metres, a second) are none.
 const NONE: f64 = 1e-9;
 
@@ -122,11 +122,28 @@ impl Offset {
         all.chain(&self.travel).all(|v| v.abs() < NONE)
     }
 
+    /// True when nothing is left after `t` seconds.
+    pub fn is_over(&self, t: f64) -> bool {
+        t >= self.secs
+    }
+
     /// Adds what is left after `t` seconds.
     pub fn add(&self, t: f64, to: &mut Moving) {
-        if t >= self.secs {
+        if self.is_over(t) {
             return;
         }
+        let sums = to.values.iter_mut().zip(&mut to.velocities);
+        for ((value, velocity), (x, v)) in sums.zip(self.left(t)) {
+            *value += x;
+            *velocity += v;
+        }
+        for (sum, v) in to.travel.iter_mut().zip(self.travel_left(t)) {
+            *sum += v;
+        }
+    }
+
+    /// What is left of values and velocities before it is over.
+    pub fn left(&self, t: f64) -> impl Iterator<Item = (f64, f64)> {
         let (fade, fading) = fade(t / self.secs);
         let fading = fading / self.secs;
         let (mut brake, mut braking) = (0.0, 0.0);
@@ -135,14 +152,13 @@ impl Offset {
             brake *= self.velocity_secs;
         }
         let differences = self.values.iter().zip(&self.velocities);
-        let sums = to.values.iter_mut().zip(&mut to.velocities);
-        for ((value, velocity), (x, v)) in sums.zip(differences) {
-            *value += x * fade + v * brake;
-            *velocity += x * fading + v * braking;
-        }
-        for (sum, v) in to.travel.iter_mut().zip(self.travel) {
-            *sum += v * fade;
-        }
+        differences.map(move |(x, v)| (x * fade + v * brake, x * fading + v * braking))
+    }
+
+    /// What is left of the root's travel before it is over.
+    pub fn travel_left(&self, t: f64) -> [f64; 3] {
+        let (fade, _) = fade(t / self.secs);
+        self.travel.map(|v| v * fade)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::synthesizer::Command;
+use super::command::Command;
 use crate::error::{Error, Result};
 use crate::skeleton::Skeleton;
 

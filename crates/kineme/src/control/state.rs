@@ -151,6 +151,31 @@ impl Moving {
         }
     }
 
+    /// Takes what does not join a goal for being there; nothing without `joining` (coordinates, the root last).
+    pub fn elsewhere_as(&mut self, goal: &Moving, joining: Option<&[bool]>) {
+        if let Some(joining) = joining {
+            let others: Vec<bool> = joining.iter().map(|joins| !joins).collect();
+            self.take(goal, &others);
+        }
+    }
+
+    /// Takes these coordinates and their velocities from another, the root's travel with its height.
+    pub fn take(&mut self, from: &Moving, which: &[bool]) {
+        for (c, _) in which.iter().enumerate().filter(|(_, which)| **which) {
+            self.values[c] = from.values[c];
+            self.velocities[c] = from.velocities[c];
+        }
+        if which.last() == Some(&true) {
+            self.travel = from.travel;
+        }
+    }
+
+    /// The same places passed at a share of the velocity.
+    pub fn slowed(&mut self, share: f64) {
+        let velocities = self.velocities.iter_mut().chain(&mut self.travel);
+        velocities.for_each(|v| *v *= share);
+    }
+
     /// A posture that is held.
     pub fn still(values: Vec<f64>) -> Self {
         Self {

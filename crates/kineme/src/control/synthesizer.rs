@@ -2,39 +2,17 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector3;
-
 use super::clock::Clock;
+use super::command::Command;
 use super::manner::{Manner, Pace, SPEEDS};
 use super::offset::{Inertialization, Offset};
 use super::state::{Moving, State, rise};
 use crate::error::{Error, Result};
 use crate::primitive::Course;
-use crate::skeleton::{Root, Skeleton};
+use crate::skeleton::Skeleton;
 
 /// How near its end (seconds) a course is at its end: less than any rounding of times matters, more than it makes.
 const AT_END_SECS: f64 = 1e-9;
-/// Seconds over which the limits' effect on velocities is taken.
-const SLOPE_SECS: f64 = 1e-5;
-
-/// What a body is to do now.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Command {
-    /// Joint coordinates, radians, within the body's limits.
-    pub pose: Vec<f64>,
-    /// Their velocities, radians a second.
-    pub velocity: Vec<f64>,
-    /// Their mean accelerations over the step that led here, radians a second squared.
-    pub acceleration: Vec<f64>,
-    /// Where the body stands.
-    pub root: Root,
-    /// The phase of the course in [0, 1]; 0 before the first.
-    pub phase: f64,
-    /// Whether the course has come to its end and the body with it, or none was begun. The last posture is held.
-    pub finished: bool,
-    /// How many coordinates the joint limits hold back.
-    pub limited: usize,
-}
 
 /// What a body follows.
 #[derive(Debug, Clone)]
@@ -64,11 +42,15 @@ pub struct Synthesizer {
     settings: Inertialization,
     /// Coordinates of each joint of each part of the body, for the speed of joining.
     parts: Vec<Vec<Vec<usize>>>,
+    /// Which coordinates, and the root last, join a course; the others are taken to be on it.
+    joining: Option<Vec<bool>>,
     target: Target,
     offset: Offset,
     /// Steps since the target was set, and what the time since then is more than these.
     steps: u64,
     late_secs: f64,
+    /// How fast its time went at the last step, as a share of the clock's.
+    flow: f64,
     /// Before joint limits; the height's velocity without that of what is followed, which is costly and seldom needed.
     now: Moving,
     command: Command,
@@ -102,10 +84,12 @@ impl Synthesizer {
             body,
             rate_hz,
             settings,
+            joining: None,
             target: Target::Posture(target.values),
             offset,
             steps: 0,
             late_secs: 0.0,
+            flow: 1.0,
             now,
             command: Command {
                 pose: vec![0.0; dof],
@@ -117,7 +101,7 @@ impl Synthesizer {
                 limited: 0,
             },
         };
-        new.emit();
+        new.command.emit(&new.body, &new.now, rate_hz);
         new.command.acceleration.fill(0.0);
         Ok(new)
     }
@@ -151,11 +135,11 @@ impl Synthesizer {
             )));
         }
         manner.check()?;
-        let mut now = self.now.clone();
-        now.velocities[self.body.dof()] += self.rise_at(self.elapsed_secs());
+        let mut now = self.now_whole();
         let renamed = now.named_near(&self.body, &course.pose(0.0));
         let (cycles, natural) = manner.cycles_and_speed(&course);
-        let phase = manner.entry.phase(&course, &now, natural);
+        let joining = self.joining.as_deref();
+        let phase = manner.entry.phase(&course, &now, natural, joining);
         let from_secs = course.secs_at(phase);
         let left_secs = if course.is_cyclic() {
             cycles * course.duration_secs()
@@ -174,7 +158,9 @@ impl Synthesizer {
             Pace::Times(speed) => speed,
             Pace::Secs(secs) => left_secs / secs,
         };
-        let join = if Offset::between(&now, &place(direct), 1.0, 1.0).is_none() {
+        let direct = place(direct);
+        now.elsewhere_as(&direct, joining);
+        let join = if Offset::between(&now, &direct, 1.0, 1.0).is_none() {
             0.0
         } else {
             self.settings.secs(&now, &place(0.0), &self.parts)
@@ -201,6 +187,7 @@ impl Synthesizer {
             whole,
         };
         let goal = place(speed * clock.at(0.0).1);
+        now.elsewhere_as(&goal, joining);
         self.offset = Offset::between(&now, &goal, join, self.settings.blend_secs);
         self.target = Target::Course {
             course,
@@ -208,12 +195,12 @@ impl Synthesizer {
             speed,
             clock,
         };
-        (self.steps, self.late_secs) = (0, 0.0);
+        (self.steps, self.late_secs, self.flow) = (0, 0.0, 1.0);
         now.velocities[self.body.dof()] -= goal.velocities[self.body.dof()];
         self.now = now;
         if renamed {
             let acceleration = self.command.acceleration.clone();
-            self.emit();
+            self.command.emit(&self.body, &self.now, self.rate_hz);
             self.command.acceleration = acceleration;
         }
         self.command.phase = phase;
@@ -249,7 +236,18 @@ impl Synthesizer {
     /// One step of the rate: where the body is to be next.
     pub fn step(&mut self) -> &Command {
         let travel = self.now.travel;
+        self.advance(1.0);
+        let command = &mut self.command;
+        command.travel(travel, &self.now, 1.0 / self.rate_hz);
+        command.emit(&self.body, &self.now, self.rate_hz);
+        &self.command
+    }
+
+    /// One step of the rate, of which only the share `flow` passes for what is followed; no command is given.
+    pub(super) fn advance(&mut self, flow: f64) {
         self.steps += 1;
+        self.late_secs -= (1.0 - flow) / self.rate_hz;
+        self.flow = flow;
         let mut t = self.elapsed_secs();
         if let Target::Course { clock, .. } = &self.target
             && t >= clock.end() - AT_END_SECS
@@ -260,9 +258,9 @@ impl Synthesizer {
             t = self.late_secs;
         }
         self.follow(t);
-        self.advance_root(travel);
-        self.emit();
-        &self.command
+        if flow != 1.0 {
+            self.now.slowed(flow);
+        }
     }
 
     /// Seconds since the target was set.
@@ -329,56 +327,49 @@ impl Synthesizer {
         }
     }
 
-    /// Moves the root by the mean of its velocities before and after the step, along the heading in its middle.
-    fn advance_root(&mut self, before: [f64; 3]) {
-        let secs = 1.0 / self.rate_hz;
-        let after = self.now.travel;
-        let mean = |i: usize| 0.5 * (before[i] + after[i]) * secs;
-        let (forward, left, turn) = (mean(0), mean(1), mean(2));
-        let root = &mut self.command.root;
-        let (sine, cosine) = (root.yaw + 0.5 * turn).sin_cos();
-        root.position += Vector3::new(
-            forward * cosine - left * sine,
-            forward * sine + left * cosine,
-            0.0,
+    /// Puts the body where it is said to be, whatever it did; its height's velocity with that of what it follows. It
+    /// holds that posture.
+    pub(super) fn place(&mut self, now: Moving) {
+        let still = Moving::still(now.values.clone());
+        self.offset = Offset::between(
+            &now,
+            &still,
+            self.settings.blend_secs,
+            self.settings.blend_secs,
         );
-        root.position.z = self.now.values[self.body.dof()];
-        root.yaw += turn;
+        self.target = Target::Posture(still.values);
+        (self.steps, self.late_secs, self.flow) = (0, 0.0, 1.0);
+        self.now = now;
     }
 
-    /// Writes what the body is to do now, within its limits.
-    fn emit(&mut self) {
-        let dof = self.body.dof();
-        let (pose, velocity) = (&self.now.values[..dof], &self.now.velocities[..dof]);
-        let command = &mut self.command;
-        command.pose.copy_from_slice(pose);
-        command.limited = self.body.limited(&mut command.pose);
-        for (a, v) in command.acceleration.iter_mut().zip(&command.velocity) {
-            *a = -v;
-        }
-        command.velocity.copy_from_slice(velocity);
-        if command.limited > 0 {
-            let moved = |secs: f64| {
-                let pairs = pose.iter().zip(velocity);
-                let mut moved: Vec<f64> = pairs.map(|(x, v)| x + v * secs).collect();
-                self.body.limited(&mut moved);
-                moved
-            };
-            let (before, after) = (moved(-SLOPE_SECS), moved(SLOPE_SECS));
-            for c in 0..dof {
-                if command.pose[c] != pose[c] {
-                    command.velocity[c] = (after[c] - before[c]) / (2.0 * SLOPE_SECS);
-                }
-            }
-        }
-        for (a, v) in command.acceleration.iter_mut().zip(&command.velocity) {
-            *a = (*a + v) * self.rate_hz;
+    /// Only these coordinates, and the root last, join what is begun from now on.
+    pub(super) fn joins(&mut self, joining: Vec<bool>) {
+        self.joining = Some(joining);
+    }
+
+    /// Where the body is before joint limits; the height's velocity without that of what is followed.
+    pub(super) fn now(&self) -> &Moving {
+        &self.now
+    }
+
+    /// The same with the height's whole velocity, which costs more.
+    pub(super) fn now_whole(&self) -> Moving {
+        let mut now = self.now.clone();
+        now.velocities[self.body.dof()] += self.rise_at(self.elapsed_secs()) * self.flow;
+        now
+    }
+
+    /// The posture that is held, the height last.
+    pub(super) fn held(&self) -> Option<&[f64]> {
+        match &self.target {
+            Target::Posture(held) => Some(held),
+            Target::Course { .. } => None,
         }
     }
 }
 
 /// The coordinates of the joints that move, joints of the trunk together, those of the neck together.
-fn parts(body: &Skeleton) -> Vec<Vec<Vec<usize>>> {
+pub(super) fn parts(body: &Skeleton) -> Vec<Vec<Vec<usize>>> {
     let coordinates = |joints: &[usize]| -> Vec<Vec<usize>> {
         joints
             .iter()

@@ -1,5 +1,8 @@
 //! Laws of moving a body along courses: nothing jumps, nothing is lost, every movement comes to its end.
 
+mod arbitration;
+mod feedback;
+mod plans;
 mod vocabulary;
 
 use std::f64::consts::{PI, TAU};

@@ -6,7 +6,8 @@ use std::sync::{Arc, OnceLock};
 
 use kineme::choreography::{Key, perform};
 use kineme::{
-    Course, Exemplar, Modelling, Motion, Primitive, Provenance, Role, Root, Skeleton, adonis, ares,
+    Course, Exemplar, Modelling, Motion, Primitive, Provenance, Role, Root, Skeleton, Transitions,
+    Vocabulary, adonis, ares,
 };
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -189,4 +190,11 @@ pub fn posture(body: &Skeleton, random: &mut Pcg64) -> Vec<f64> {
     }
     body.limited(&mut pose);
     pose
+}
+
+/// The primitives as what a controller moves a body by.
+pub fn vocabulary_of(primitives: &[Primitive]) -> Vocabulary {
+    let body = Arc::clone(primitives[0].body());
+    let transitions = Transitions::none(primitives.len());
+    Vocabulary::new(body, primitives.to_vec(), Vec::new(), transitions).expect("a vocabulary")
 }
