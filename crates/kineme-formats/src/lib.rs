@@ -36,6 +36,7 @@ pub mod manifest;
 pub mod marks;
 pub mod npz;
 pub mod output;
+pub mod plan;
 pub mod positions;
 pub mod profile;
 pub mod script;

@@ -279,11 +279,10 @@ fn velocity_and_acceleration_are_those_of_the_poses() {
             told.push((moved.velocity.clone(), moved.acceleration.clone()));
         }
         for f in (50..3950).step_by(50) {
-            for k in 0..to.dof() {
+            for (k, (&v, &a)) in told[f].0.iter().zip(&told[f].1).enumerate() {
                 let at = |i: usize| poses[i][k];
                 let velocity = (at(f + 40) - at(f - 40)) / (80.0 * step);
                 let acceleration = (at(f + 40) - 2.0 * at(f) + at(f - 40)) / (40.0 * step).powi(2);
-                let (v, a) = (told[f].0[k], told[f].1[k]);
                 assert!(
                     (v - velocity).abs() < 5e-3 * (1.0 + velocity.abs()),
                     "{} {k}: {v} not {velocity}",
