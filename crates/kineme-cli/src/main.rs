@@ -3,6 +3,7 @@
 mod args;
 mod choreograph;
 mod classify;
+mod control;
 mod convert;
 mod demo;
 mod derive;
@@ -77,6 +78,7 @@ fn run(cli: &Cli) -> Result<u8, Failure> {
         Command::Synthesize(args) => synthesize::run(args, &cli.global),
         Command::Evaluate(args) => evaluate::run(args, &cli.global),
         Command::Classify(args) => classify::run(args, &cli.global),
+        Command::Control(args) => control::run(args, &cli.global),
         Command::Encode(args) => encode::run(args, &cli.global),
         Command::Demo(args) => demo::run(args, &cli.global),
     }

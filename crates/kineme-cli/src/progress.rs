@@ -18,3 +18,11 @@ pub fn spinner() -> ProgressBar {
     spinner.enable_steady_tick(Duration::from_millis(120));
     spinner
 }
+
+/// A bar over seconds of a body's time.
+pub fn seconds(whole: f64, what: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %");
+    ProgressBar::new((whole * 1000.0).ceil() as u64)
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+        .with_message(what)
+}

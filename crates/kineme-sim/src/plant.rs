@@ -236,9 +236,7 @@ impl Plant {
                 let wanted = &mut self.wanted;
                 wanted.qpos_mut().copy_from_slice(&target.angles);
                 wanted.qvel_mut().copy_from_slice(&target.rates);
-                wanted
-                    .qacc_mut()
-                    .copy_from_slice(&target.accelerations);
+                wanted.qacc_mut().copy_from_slice(&target.accelerations);
                 wanted.kinematics();
                 wanted.com_pos();
                 wanted.tendon_comp();

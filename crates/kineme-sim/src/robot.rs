@@ -124,9 +124,7 @@ impl SimulatedRobot {
 
     /// Joints in the frames of the engine's bodies, while all coordinates are zero.
     fn placed(&self, bodies: &[usize]) -> Vec<(usize, Vector3<f64>, Matrix3<f64>)> {
-        let frames = self
-            .body
-            .frames(&vec![0.0; self.body.dof()], &Root::ORIGIN);
+        let frames = self.body.frames(&vec![0.0; self.body.dof()], &Root::ORIGIN);
         let data = self.plant.data();
         let place = |b: usize| Vector3::from(data.xpos()[b]);
         let turn = |b: usize| Matrix3::from_row_slice(&data.xmat()[b]);

@@ -90,9 +90,8 @@ impl Triple {
         let near = |angles: [f64; 3]| -> [f64; 3] {
             std::array::from_fn(|i| previous[i] + wrap(angles[i] - previous[i]))
         };
-        let far = |angles: &[f64; 3]| -> f64 {
-            (0..3).map(|i| (angles[i] - previous[i]).powi(2)).sum()
-        };
+        let far =
+            |angles: &[f64; 3]| -> f64 { (0..3).map(|i| (angles[i] - previous[i]).powi(2)).sum() };
         let (one, other) = (near([a, b, c]), near([a + pi, pi - b, c + pi]));
         if far(&other) < far(&one) { other } else { one }
     }
@@ -116,11 +115,9 @@ impl Triple {
         }
         // Damped least squares.
         let square = matrix.transpose() * matrix + Matrix3::identity() * DAMPING;
-        let rates = square
-            .try_inverse()
-            .map_or_else(Vector3::zeros, |inverse| {
-                inverse * matrix.transpose() * angular
-            });
+        let rates = square.try_inverse().map_or_else(Vector3::zeros, |inverse| {
+            inverse * matrix.transpose() * angular
+        });
         rates.into()
     }
 

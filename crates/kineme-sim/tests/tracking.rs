@@ -71,10 +71,30 @@ fn hinges_follow_a_sinus_as_near_as_their_law_allows() {
     let ares = || kineme::ares().expect("ares");
     let cases = [
         ("adonis PD", adonis(), Servo::Pd, 0.02),
-        ("adonis feedforward", adonis(), Servo::FeedforwardFeedback, 0.0006),
-        ("adonis computed torque", adonis(), Servo::ComputedTorque, 0.0006),
-        ("ares feedforward", ares(), Servo::FeedforwardFeedback, 0.002),
-        ("ares computed torque", ares(), Servo::ComputedTorque, 0.0006),
+        (
+            "adonis feedforward",
+            adonis(),
+            Servo::FeedforwardFeedback,
+            0.0006,
+        ),
+        (
+            "adonis computed torque",
+            adonis(),
+            Servo::ComputedTorque,
+            0.0006,
+        ),
+        (
+            "ares feedforward",
+            ares(),
+            Servo::FeedforwardFeedback,
+            0.002,
+        ),
+        (
+            "ares computed torque",
+            ares(),
+            Servo::ComputedTorque,
+            0.0006,
+        ),
     ];
     for (name, body, servo, most) in cases {
         let rms = tracking(body, servo, 1.5);

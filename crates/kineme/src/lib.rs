@@ -129,6 +129,7 @@ pub mod derivation;
 pub mod embedding;
 pub mod error;
 pub mod evaluation;
+pub mod interaction;
 pub mod interpolation;
 pub mod math;
 pub mod motion;

@@ -1,11 +1,13 @@
 //! The command line, as clap reads it and as `--help` teaches it.
 
 mod classify;
+mod control;
 mod encode;
 mod evaluate;
 mod model;
 
 pub use classify::{ClassifierArgs, ClassifierName, ClassifyArgs};
+pub use control::{ControlArgs, ServoName};
 pub use encode::{EncodeArgs, EncodeMethod};
 pub use evaluate::{EvaluateArgs, MethodName};
 pub use model::{
@@ -29,6 +31,8 @@ Examples:
   kineme show moves.kineme                        what the primitives are, and how good
   kineme synthesize moves.kineme jab -o jab.bvh --reach right_hand=0.5,-0.35,0.1
                                                   a motion of one, aimed
+  kineme control moves.kineme plan.toml --body adonis
+                                                  a body that really moves, by a plan of them
   kineme evaluate moves.kineme tests.csv          how well its movements are recognised
   kineme classify moves.kineme take.bvh           which of them a motion is, and when
   kineme encode moves.kineme take.bvh             which of them a motion is, by its hands
@@ -81,6 +85,7 @@ pub enum Command {
     Evaluate(Box<EvaluateArgs>),
     Classify(Box<ClassifyArgs>),
     Encode(Box<EncodeArgs>),
+    Control(Box<ControlArgs>),
     Demo(DemoArgs),
 }
 

@@ -1,0 +1,128 @@
+//! `kineme control`: a plan of behaviors on a simulated body.
+
+mod bodies;
+mod told;
+mod watched;
+
+use std::time::Instant;
+
+use indicatif::ProgressBar;
+use kineme::Vocabulary;
+use kineme::control::{ControlSettings, Controller, Plan, Robot};
+use kineme::interaction::{Performance, Session, SessionSettings, standing};
+use kineme::perception::{Filter, FilterSettings};
+use kineme::primitive::{Observations, Recogniser};
+use kineme_formats::{output, plan};
+
+use crate::args::{ControlArgs, Global, Written};
+use crate::failure::{Failure, complain, print};
+use crate::outputs::{existing, refuse_existing, unwritten};
+use crate::progress;
+use crate::vocabularies::{read, read_bytes};
+use watched::Watched;
+
+/// Joints that are named in a note.
+const NAMED: usize = 8;
+
+pub fn run(args: &ControlArgs, global: &Global) -> Result<u8, Failure> {
+    let written = written(args, global)?;
+    let vocabulary = read(&args.vocabulary)?;
+    let (name, bytes) = read_bytes(&args.plan, "a plan")?;
+    let file = plan::parse(&name, &bytes)?;
+    let plan = &file.plan;
+    let watches = args.watch.is_some() || plan.observed.is_some();
+    let refused = plan.check(&vocabulary, watches.then_some(&vocabulary));
+    refused.map_err(|fault| file.fault(&fault))?;
+    let watched = Watched::asked(args, plan.observed.as_deref(), vocabulary.body())?;
+    if watched.is_some() && plan.rules.is_empty() {
+        complain("note: nothing answers what is watched: the plan has no [[rule]]");
+    }
+    let mut robot = bodies::robot(args, &vocabulary)?;
+    let begun = Instant::now();
+    let performance = perform(&vocabulary, plan, watched, &mut *robot)?;
+    let factor = plan.seconds / begun.elapsed().as_secs_f64();
+    if let (Some(out), Some(format)) = (&args.out, written) {
+        let bytes = format.bytes(&performance.done)?;
+        output::write_bytes(out, existing(global), &bytes).map_err(unwritten)?;
+    }
+    let told = told::Told::of(
+        &performance,
+        &vocabulary,
+        robot.is_physical(),
+        args.timings.then_some(factor),
+    );
+    let text = match global.json {
+        true => crate::json::line(&told)?,
+        false => told.text(args.out.as_deref()),
+    };
+    print(text.as_bytes())?;
+    Ok(0)
+}
+
+fn perform(
+    vocabulary: &Vocabulary,
+    plan: &Plan,
+    watched: Option<Watched>,
+    robot: &mut dyn Robot,
+) -> Result<Performance, Failure> {
+    let filter = match watched {
+        Some(_) => Some(Filter::new(vocabulary, &FilterSettings::default())?),
+        None => None,
+    };
+    let start = standing(vocabulary, plan)?;
+    let controller = Controller::new(vocabulary, plan, &start, &ControlSettings::default())?;
+    let recogniser = filter.as_ref().map(|f| f as &dyn Recogniser);
+    let mut session = Session::new(controller, robot, recogniser, &SessionSettings::default())?;
+    tell_unshown(&session, vocabulary);
+    let bar = progress::seconds(plan.seconds, "moving");
+    let done = match watched {
+        Some(watched) => watched.run(&mut session, vocabulary.body(), &bar),
+        None => alone(&mut session, None, &bar),
+    };
+    bar.finish_and_clear();
+    done?;
+    Ok(session.performance("control")?)
+}
+
+/// Goes on to the end of the plan, with a recording or nothing to watch.
+fn alone(
+    session: &mut Session<'_>,
+    seen: Option<&Observations>,
+    bar: &ProgressBar,
+) -> Result<(), Failure> {
+    Ok(session.run(seen, &mut |secs| show(secs, bar))?)
+}
+
+fn show(secs: f64, bar: &ProgressBar) {
+    bar.set_position((secs * 1000.0) as u64);
+}
+
+/// Tells which joints of the vocabulary's body the robot has nothing for.
+fn tell_unshown(session: &Session<'_>, vocabulary: &Vocabulary) {
+    let joints = session.without_counterpart();
+    if joints.is_empty() {
+        return;
+    }
+    let name = |j: &usize| vocabulary.body().joints()[*j].name.as_str();
+    let named: Vec<&str> = joints.iter().take(NAMED).map(name).collect();
+    let more = match joints.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        n => format!(" and {n} more"),
+    };
+    complain(&format!(
+        "note: the robot has no counterpart of {}{more}",
+        named.join(", ")
+    ));
+}
+
+fn written(args: &ControlArgs, global: &Global) -> Result<Option<Written>, Failure> {
+    let Some(out) = &args.out else {
+        return Ok(None);
+    };
+    refuse_existing([out.as_path()], global)?;
+    let format = Written::of(out).ok_or_else(|| {
+        let message = format!("`{}` says no format that can be written", out.display());
+        Failure::usage(message).hint("write .bvh, .csv or .npz")
+    })?;
+    Ok(Some(format))
+}

@@ -1,0 +1,156 @@
+//! What `kineme control` says of what was done.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use kineme::Vocabulary;
+use kineme::control::Place;
+use kineme::interaction::Performance;
+use serde::Serialize;
+
+use crate::table::{Side, aligned};
+
+/// A performance, as `--json` tells it.
+#[derive(Serialize)]
+pub struct Told {
+    body: String,
+    dof: usize,
+    physics: bool,
+    seconds: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    real_time_factor: Option<f64>,
+    tracking_rms_rad: f64,
+    tracking_max_rad: f64,
+    saturated_fraction: f64,
+    behaviors: Vec<ToldRun>,
+    noticed: Vec<ToldNotice>,
+}
+
+#[derive(Serialize)]
+struct ToldRun {
+    start: f64,
+    end: f64,
+    primitive: String,
+    joints: String,
+    rule: bool,
+    completed: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    miss: Option<f64>,
+}
+
+/// What was noticed from then on; nothing where `primitive` is null.
+#[derive(Serialize)]
+struct ToldNotice {
+    time: f64,
+    primitive: Option<String>,
+}
+
+impl Told {
+    pub fn of(
+        performance: &Performance,
+        vocabulary: &Vocabulary,
+        physics: bool,
+        real_time_factor: Option<f64>,
+    ) -> Self {
+        let body = performance.done.skeleton();
+        let name = |k: usize| vocabulary.primitives()[k].name().to_owned();
+        let effort = performance.effort;
+        let behaviors = performance.ran.iter().map(|ran| ToldRun {
+            start: ran.start_secs,
+            end: ran.end_secs,
+            primitive: ran.primitive.clone(),
+            joints: ran.joints.join(" "),
+            rule: matches!(ran.planned, Place::Rule(_)),
+            completed: ran.completed,
+            miss: ran.miss_m,
+        });
+        let noticed = performance.noticed.iter().map(|n| ToldNotice {
+            time: n.secs,
+            primitive: n.primitive.map(name),
+        });
+        Self {
+            body: body.name().into(),
+            dof: body.dof(),
+            physics,
+            seconds: performance.done.frames() as f64 / performance.done.rate_hz(),
+            real_time_factor,
+            tracking_rms_rad: performance.tracking.rms_rad,
+            tracking_max_rad: performance.tracking.max_rad,
+            saturated_fraction: effort.saturated as f64 / effort.torques.max(1) as f64,
+            behaviors: behaviors.collect(),
+            noticed: noticed.collect(),
+        }
+    }
+
+    /// The same for people.
+    pub fn text(&self, out: Option<&Path>) -> String {
+        let mut text = String::new();
+        let rows: Vec<Vec<String>> = self.behaviors.iter().map(ToldRun::row).collect();
+        if rows.is_empty() {
+            text.push_str("No behavior ran: the body stood still.\n");
+        } else {
+            let header = [
+                ("start", Side::Right),
+                ("end", Side::Right),
+                ("primitive", Side::Left),
+                ("joints", Side::Left),
+                ("", Side::Left),
+            ];
+            text.push_str(&aligned(&header, &rows));
+        }
+        let seen: Vec<String> = self
+            .noticed
+            .iter()
+            .filter_map(|n| Some(format!("{} at {:.2} s", n.primitive.as_ref()?, n.time)))
+            .collect();
+        if !seen.is_empty() {
+            let _ = writeln!(text, "\nnoticed: {}", seen.join(", "));
+        }
+        let _ = match self.physics {
+            true => writeln!(
+                text,
+                "\n{} ({} degrees of freedom) came within {:.2} degrees of what it was told (root mean square; {:.1} at \
+                 most), with {:.2} % of its torques at their limit",
+                self.body,
+                self.dof,
+                self.tracking_rms_rad.to_degrees(),
+                self.tracking_max_rad.to_degrees(),
+                100.0 * self.saturated_fraction
+            ),
+            false => writeln!(
+                text,
+                "\n{} ({} degrees of freedom) was moved without physics: it is where it was told to be",
+                self.body, self.dof
+            ),
+        };
+        if let Some(factor) = self.real_time_factor {
+            let _ = writeln!(text, "{:.1} s took {factor:.1} times less", self.seconds);
+        }
+        if let Some(out) = out {
+            let _ = writeln!(text, "written: {}", out.display());
+        }
+        text
+    }
+}
+
+impl ToldRun {
+    fn row(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self.rule {
+            notes.push("an answer".to_owned());
+        }
+        if let Some(miss) = self.miss {
+            notes.push(format!("{:.1} cm from its target", 100.0 * miss));
+        }
+        if !self.completed {
+            notes.push("not completed".to_owned());
+        }
+        vec![
+            format!("{:.2}", self.start),
+            format!("{:.2}", self.end),
+            self.primitive.clone(),
+            self.joints.clone(),
+            notes.join(", "),
+        ]
+    }
+}

@@ -1,0 +1,104 @@
+//! `kineme control`: plans that move a body.
+
+mod common;
+
+use std::fs;
+
+use common::{done, json, kineme, vocabularies, with_input};
+
+const WAVE: &str = "\
+seconds = 2.0
+arbiter = \"superposition\"
+[[behavior]]
+primitive = \"wave-across\"
+start = 0.2
+[[behavior]]
+primitive = \"wave-return\"
+start = 1.0
+";
+
+const SPAR: &str = "\
+seconds = 1.5
+[observe]
+motion = \"out.csv\"
+[[rule]]
+when = \"punch-out\"
+then = { primitive = \"punch-return\", priority = 5 }
+";
+
+#[test]
+fn a_plan_is_carried_out_and_what_was_done_is_told_and_written() {
+    let folder = vocabularies();
+    let at = folder.path();
+    fs::write(at.join("wave.toml"), WAVE).expect("a plan");
+    for body in ["ares", "adonis"] {
+        let line = format!(
+            "control horizontal-waving.kineme wave.toml --body {body} --json -o {body}.bvh --threads 1"
+        );
+        let told = json(at, &line);
+        assert_eq!(told["body"], body);
+        assert_eq!(told["dof"], if body == "ares" { 132 } else { 20 });
+        assert_eq!(told["physics"], cfg!(feature = "sim"));
+        assert_eq!(told["seconds"], 2.0);
+        assert!(told["real_time_factor"].is_null(), "no measured times");
+        let rms = told["tracking_rms_rad"].as_f64().expect("a number");
+        assert!((0.0..0.05).contains(&rms), "{rms}");
+        let behaviors = told["behaviors"].as_array().expect("a list");
+        let names: Vec<_> = behaviors.iter().map(|b| b["primitive"].clone()).collect();
+        assert_eq!(names, ["wave-across", "wave-return"]);
+        let info = json(at, &format!("info {body}.bvh --json"));
+        assert_eq!(info["frames"], 240);
+        let again = json(at, &line.replace(".bvh", ".2.bvh").replace("1", "2"));
+        assert_eq!(told["tracking_rms_rad"], again["tracking_rms_rad"]);
+    }
+    let refused = kineme(
+        at,
+        &["control", "horizontal-waving.kineme", "wave.toml", "-o", "ares.bvh"],
+    );
+    assert_eq!(refused.code, 2, "an existing file is kept: {}", refused.err);
+}
+
+#[test]
+fn what_is_watched_is_answered_from_a_file_and_from_a_stream() {
+    let folder = vocabularies();
+    let at = folder.path();
+    done(at, "synthesize punching.kineme punch-out -o out.csv");
+    fs::write(at.join("spar.toml"), SPAR).expect("a plan");
+    let line = "control punching.kineme spar.toml --kinematic --json";
+    let watched = json(at, line);
+    let answers = watched["behaviors"].as_array().expect("a list");
+    assert_eq!(answers.len(), 1, "{watched}");
+    assert_eq!(answers[0]["primitive"], "punch-return");
+    assert_eq!(answers[0]["rule"], true);
+    assert_eq!(watched["noticed"][0]["primitive"], "punch-out");
+    let rows = fs::read(at.join("out.csv")).expect("a table");
+    let words = line.split_whitespace().chain(["--watch", "-"]);
+    let streamed = with_input(at, &words.collect::<Vec<_>>(), &rows);
+    assert_eq!(streamed.code, 0, "{}", streamed.err);
+    let streamed: serde_json::Value = serde_json::from_str(&streamed.out).expect("JSON");
+    assert_eq!(streamed["behaviors"], watched["behaviors"]);
+}
+
+#[test]
+fn what_a_plan_may_not_ask_for_is_refused_with_its_line_before_anything_moves() {
+    let folder = vocabularies();
+    let at = folder.path();
+    let cases: [(&str, &str, &str, &str); 6] = [
+        ("wave-across\"", "wave-acros\"", ":3", "wave-across"),
+        ("start = 0.2", "start = -1", ":3", "negative"),
+        ("start = 0.2", "joints = [\"left_leg\"]", ":3", "moves none of"),
+        ("start = 0.2", "joints = [\"tail\"]", ":3", "tail"),
+        ("start = 1.0", "weight = 0", ":6", "weight"),
+        ("seconds = 2.0", "seconds = 0", "", "seconds"),
+    ];
+    for (old, new, line, says) in cases {
+        assert!(WAVE.contains(old), "{old}");
+        fs::write(at.join("bad.toml"), WAVE.replacen(old, new, 1)).expect("a plan");
+        let words = ["control", "horizontal-waving.kineme", "bad.toml", "-o", "x.bvh"];
+        let run = kineme(at, &words);
+        assert_eq!(run.code, 3, "{new}: {}", run.err);
+        assert!(run.err.contains(&format!("bad.toml{line}")), "{new}: {}", run.err);
+        assert!(run.err.contains(says), "{new}: {}", run.err);
+        assert!(!at.join("x.bvh").exists());
+    }
+}
