@@ -21,10 +21,12 @@ const MOVES_RAD: f64 = 0.02;
 const TRAVELS: f64 = 1e-3;
 
 /// What a behaviour may move.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Mask {
     /// By joint.
     pub joints: Vec<bool>,
+    /// How much of its movement each joint is: shares of the ranges through which the primitive moves them; they sum to 1.
+    pub stakes: Vec<f64>,
     /// Whether the root goes with it.
     pub root: bool,
 }
@@ -95,7 +97,15 @@ impl Mask {
             !leg.is_empty() && leg.into_iter().all(|j| joints[j])
         };
         let root = legs("left_leg") && legs("right_leg");
-        Ok(Self { joints, root })
+        let of_joints = joints.iter().zip(&moved.stakes);
+        let stakes: Vec<f64> = of_joints
+            .map(|(held, stake)| if *held { *stake } else { 0.0 })
+            .collect();
+        Ok(Self {
+            joints,
+            stakes: normalised(stakes),
+            root,
+        })
     }
 
     /// What a primitive moves: joints that differ between any two postures of its exemplars.
@@ -120,18 +130,19 @@ impl Mask {
             }
         }
         let range = |j: usize| -> f64 {
-            body.coordinates(j)
-                .map(|c| high[c] - low[c])
-                .fold(0.0, f64::max)
+            let square = |c: usize| (high[c] - low[c]).powi(2);
+            body.coordinates(j).map(square).sum::<f64>().sqrt()
         };
-        let mut joints: Vec<bool> = (0..body.joints().len())
-            .map(|j| range(j) > MOVES_RAD)
-            .collect();
+        let ranges: Vec<f64> = (0..body.joints().len()).map(range).collect();
+        let mut joints: Vec<bool> = ranges.iter().map(|range| *range > MOVES_RAD).collect();
         for chain in [body.trunk(), body.neck()] {
-            let moves = chain.iter().map(|&j| range(j)).sum::<f64>() > MOVES_RAD;
+            let moves = chain.iter().map(|&j| ranges[j]).sum::<f64>() > MOVES_RAD;
             chain.into_iter().for_each(|j| joints[j] = moves);
         }
+        let of_joints = joints.iter().zip(ranges);
+        let stakes = of_joints.map(|(moves, range)| if *moves { range } else { 0.0 });
         Self {
+            stakes: normalised(stakes.collect()),
             joints,
             root: travels || heights[1] - heights[0] > TRAVELS,
         }
@@ -153,6 +164,15 @@ impl Mask {
         names.extend(single.filter(moves).map(|j| body.joints()[j].name.clone()));
         names
     }
+}
+
+/// Shares of the whole; none of nothing.
+fn normalised(mut shares: Vec<f64>) -> Vec<f64> {
+    let whole: f64 = shares.iter().sum();
+    if whole > 0.0 {
+        shares.iter_mut().for_each(|share| *share /= whole);
+    }
+    shares
 }
 
 /// The joint of this name.
