@@ -208,11 +208,17 @@ fn one_arm_waves_while_the_trunk_twists() {
 
 #[test]
 fn a_jab_interrupts_a_wave_which_is_resumed() {
-    let reach = Aiming::Reach {
-        effector: "right_hand".into(),
-        at: [0.45, 0.0, 0.05],
-    };
     for vocabulary in [&*ADONIS, &*ARES] {
+        let jab = vocabulary.primitive("jab").expect("a jab");
+        let aim = jab.aim("right_hand").expect("a hand");
+        let p = [0.35, 0.6];
+        let target = aim
+            .position(&p, aim.extreme(&p).expect("an extreme"))
+            .expect("a place");
+        let reach = Aiming::Reach {
+            effector: "right_hand".into(),
+            at: target.into(),
+        };
         let asked = plan(
             120.0,
             6.0,
@@ -223,7 +229,7 @@ fn a_jab_interrupts_a_wave_which_is_resumed() {
                     ..Planned::new("wave-up")
                 },
                 Planned {
-                    aim: reach.clone(),
+                    aim: reach,
                     start_secs: 1.0,
                     priority: 3,
                     ..Planned::new("jab")
@@ -241,66 +247,68 @@ fn a_jab_interrupts_a_wave_which_is_resumed() {
             .collect();
         assert_eq!(ran, [("wave-up", false), ("jab", true), ("wave-up", true)]);
         let miss = c.ran()[1].miss_m.expect("a target");
-        assert!(miss < 0.2 && c.ran()[0].miss_m.is_none(), "{miss}");
+        assert!(miss < 1e-3 && c.ran()[0].miss_m.is_none(), "{miss}");
     }
 }
 
-/// What a tick costs; timing decides nothing here. `cargo test --release -p kineme-formats --test transitions -- --nocapture cost`
+/// What a tick costs: of several runs the least time of each tick, so that what else the machine does is left out.
+/// Timing decides nothing here: `cargo test --release -p kineme-formats --test transitions cost -- --nocapture` prints it.
 #[test]
 fn the_cost_of_ticks() {
+    const RUNS: usize = 8;
     for vocabulary in [&*ADONIS, &*ARES] {
-        let three = |arbitration| Plan {
-            arbitration,
-            ..plan(
-                120.0,
-                20.0,
-                vec![
-                    Planned {
-                        repeat: 20,
-                        joints: vec!["right_arm".into()],
-                        ..Planned::new("wave-up")
-                    },
-                    Planned {
-                        repeat: 20,
-                        joints: vec!["left_arm".into(), "right_arm".into()],
-                        ..Planned::new("jab")
-                    },
-                    Planned {
-                        repeat: 20,
-                        joints: vec![
-                            "trunk".into(),
-                            "head".into(),
-                            "left_leg".into(),
-                            "right_leg".into(),
-                        ],
-                        ..Planned::new("twist-left")
-                    },
-                ],
-            )
+        let one = |name: &str, joints: &[&str], start_secs: f64| Planned {
+            repeat: 8,
+            joints: joints.iter().map(|j| j.to_string()).collect(),
+            start_secs,
+            ..Planned::new(name)
+        };
+        let interrupts = Planned {
+            priority: 1,
+            start_secs: 2.0,
+            ..Planned::new("jab")
         };
         for arbitration in [Arbitration::Priority, Arbitration::Superposition] {
-            let mut c = controller(vocabulary, &three(arbitration));
-            let mut times = Vec::new();
-            let mut sensed = Sensed {
-                pose: c.command().pose.clone(),
-                velocity: c.command().velocity.clone(),
+            let asked = Plan {
+                arbitration,
+                ..plan(
+                    120.0,
+                    9.0,
+                    vec![
+                        one("wave-up", &["right_arm"], 0.0),
+                        one("jab", &["left_arm", "right_arm"], 0.1),
+                        one(
+                            "twist-left",
+                            &["trunk", "head", "left_leg", "right_leg"],
+                            0.2,
+                        ),
+                        interrupts.clone(),
+                    ],
+                )
             };
-            while !c.finished() {
-                let before = Instant::now();
-                c.tick(Some(&sensed), None);
-                times.push(before.elapsed().as_secs_f64() * 1e6);
-                // Always somewhat away, so that feedback has to work.
-                sensed.pose.clone_from(&c.command().pose);
-                sensed.pose.iter_mut().for_each(|x| *x += 0.1);
+            let mut least = vec![f64::INFINITY; 1080];
+            for _ in 0..RUNS {
+                let mut c = controller(vocabulary, &asked);
+                let mut sensed = Sensed {
+                    pose: c.command().pose.clone(),
+                    velocity: c.command().velocity.clone(),
+                };
+                for least in &mut least {
+                    let before = Instant::now();
+                    c.tick(Some(&sensed), None);
+                    *least = least.min(before.elapsed().as_secs_f64() * 1e6);
+                    // Always somewhat away, so that feedback has to work.
+                    sensed.pose.clone_from(&c.command().pose);
+                    sensed.pose.iter_mut().for_each(|x| *x += 0.1);
+                }
             }
-            times.sort_by(f64::total_cmp);
+            least.sort_by(f64::total_cmp);
             println!(
-                "{} {arbitration:?}: median {:.1} us, 99 % {:.1}, longest {:.0}, of {}",
+                "{} {arbitration:?}: median {:.1} us, 99 % {:.1}, longest {:.1}",
                 vocabulary.body().name(),
-                times[times.len() / 2],
-                times[times.len() * 99 / 100],
-                times[times.len() - 1],
-                times.len()
+                least[least.len() / 2],
+                least[least.len() * 99 / 100],
+                least[least.len() - 1],
             );
         }
     }

@@ -15,7 +15,7 @@ const PARTS: [&str; 6] = [
 ];
 /// Phases at which exemplars are looked at.
 const PHASES: usize = 33;
-/// A joint that turns by less, or a chain of vertebrae that does altogether, is not moved, radians (about a degree).
+/// A part of the body whose joints turn by less altogether is not moved, radians (about a degree).
 const MOVES_RAD: f64 = 0.02;
 /// Travel below this (metres, a second) is none.
 const TRAVELS: f64 = 1e-3;
@@ -108,7 +108,8 @@ impl Mask {
         })
     }
 
-    /// What a primitive moves: joints that differ between any two postures of its exemplars.
+    /// What a primitive moves: parts of the body that differ between any two postures of its exemplars, each as a whole
+    /// (a wave holds its elbow bent), and joints of no part that do.
     fn moved(primitive: &Primitive) -> Self {
         let body = primitive.body();
         let mut low = vec![f64::INFINITY; body.dof()];
@@ -135,9 +136,10 @@ impl Mask {
         };
         let ranges: Vec<f64> = (0..body.joints().len()).map(range).collect();
         let mut joints: Vec<bool> = ranges.iter().map(|range| *range > MOVES_RAD).collect();
-        for chain in [body.trunk(), body.neck()] {
-            let moves = chain.iter().map(|&j| ranges[j]).sum::<f64>() > MOVES_RAD;
-            chain.into_iter().for_each(|j| joints[j] = moves);
+        for name in PARTS {
+            let own = part(body, name);
+            let moves = own.iter().map(|&j| ranges[j]).sum::<f64>() > MOVES_RAD;
+            own.into_iter().for_each(|j| joints[j] = moves);
         }
         let of_joints = joints.iter().zip(ranges);
         let stakes = of_joints.map(|(moves, range)| if *moves { range } else { 0.0 });

@@ -114,8 +114,11 @@ fn behaviors_on_other_joints_do_not_disturb_one_another_and_the_rest_holds() {
         start_secs: 0.3,
         ..Planned::new("raise")
     };
-    let right = coordinates(&vocabulary, &["right_shoulder", "right_elbow"]);
-    let left = coordinates(&vocabulary, &["left_shoulder", "left_elbow"]);
+    let right = coordinates(
+        &vocabulary,
+        &["right_shoulder", "right_elbow", "right_wrist"],
+    );
+    let left = coordinates(&vocabulary, &["left_shoulder", "left_elbow", "left_wrist"]);
     for arbitration in [Arbitration::Priority, Arbitration::Superposition] {
         let with = |behaviors| Plan {
             arbitration,
@@ -251,7 +254,10 @@ fn what_loses_some_joints_goes_on_and_what_loses_most_waits() {
         seconds: 7.0,
         ..plan(behaviors)
     };
-    let right = coordinates(&vocabulary, &["right_shoulder", "right_elbow"]);
+    let right = coordinates(
+        &vocabulary,
+        &["right_shoulder", "right_elbow", "right_wrist"],
+    );
     // Walking loses one arm of two: the other goes on as if nothing were, and the one that is given back joins it.
     let both = run(&vocabulary, &with(vec![low("walk"), high("wave")]), &start);
     let alone = run(&vocabulary, &with(vec![low("walk")]), &start);
