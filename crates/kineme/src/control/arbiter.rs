@@ -3,6 +3,9 @@
 use super::mask::Mask;
 use super::plan::Arbitration;
 
+/// The share of a movement that is worth making, but for the rounding of a third.
+const ENOUGH: f64 = 0.333;
+
 /// A behaviour that wants to move joints.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Contender<'a> {
@@ -61,10 +64,33 @@ impl Arbiter {
 
     /// The shares of the contenders (in the order of behaviours) in each joint and, last, the root, where `before` has
     /// those until now.
+    ///
+    /// Who would get less than a third of its movement gets nothing of it, and waits: half a wave is none.
     pub fn shares(&mut self, contenders: &[Contender], before: &[Shares]) -> Vec<Shares> {
         if self.kind == Arbitration::Winner {
             self.elect(contenders);
         }
+        let mut contenders = contenders.to_vec();
+        loop {
+            let shares = self.divided(&contenders, before);
+            let stake = |c: &Contender| -> f64 {
+                let joints = shares.iter().zip(&c.mask.stakes);
+                let held = joints.filter(|(s, _)| s.iter().any(|(b, _)| *b == c.behavior));
+                held.map(|(_, stake)| stake).sum()
+            };
+            let crippled = (0..contenders.len()).filter(|&k| stake(&contenders[k]) < ENOUGH);
+            let rank = |&k: &usize| {
+                let c = &contenders[k];
+                (c.priority, std::cmp::Reverse(c.order))
+            };
+            match crippled.min_by_key(rank) {
+                Some(k) => contenders.remove(k),
+                None => return shares,
+            };
+        }
+    }
+
+    fn divided(&self, contenders: &[Contender], before: &[Shares]) -> Vec<Shares> {
         let joints = before.len() - 1;
         let places = before.iter().enumerate();
         let shares = places.map(|(j, before)| {
@@ -135,6 +161,7 @@ mod tests {
         ];
         let masks = all.map(|(joints, ..)| Mask {
             joints: joints.to_vec(),
+            stakes: joints.map(|held| f64::from(u8::from(held)) / 2.0).to_vec(),
             root: false,
         });
         let mut arbiter = Arbiter::new(kind, 0.1, 2);

@@ -15,16 +15,18 @@ const PARTS: [&str; 6] = [
 ];
 /// Phases at which exemplars are looked at.
 const PHASES: usize = 33;
-/// A joint that turns by less, or a chain of vertebrae that does altogether, is not moved, radians (about a degree).
+/// A part of the body whose joints turn by less altogether is not moved, radians (about a degree).
 const MOVES_RAD: f64 = 0.02;
 /// Travel below this (metres, a second) is none.
 const TRAVELS: f64 = 1e-3;
 
 /// What a behaviour may move.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Mask {
     /// By joint.
     pub joints: Vec<bool>,
+    /// How much of its movement each joint is: shares of the ranges through which the primitive moves them; they sum to 1.
+    pub stakes: Vec<f64>,
     /// Whether the root goes with it.
     pub root: bool,
 }
@@ -95,10 +97,19 @@ impl Mask {
             !leg.is_empty() && leg.into_iter().all(|j| joints[j])
         };
         let root = legs("left_leg") && legs("right_leg");
-        Ok(Self { joints, root })
+        let of_joints = joints.iter().zip(&moved.stakes);
+        let stakes: Vec<f64> = of_joints
+            .map(|(held, stake)| if *held { *stake } else { 0.0 })
+            .collect();
+        Ok(Self {
+            joints,
+            stakes: normalised(stakes),
+            root,
+        })
     }
 
-    /// What a primitive moves: joints that differ between any two postures of its exemplars.
+    /// What a primitive moves: parts of the body that differ between any two postures of its exemplars, each as a whole
+    /// (a wave holds its elbow bent), and joints of no part that do.
     fn moved(primitive: &Primitive) -> Self {
         let body = primitive.body();
         let mut low = vec![f64::INFINITY; body.dof()];
@@ -120,18 +131,20 @@ impl Mask {
             }
         }
         let range = |j: usize| -> f64 {
-            body.coordinates(j)
-                .map(|c| high[c] - low[c])
-                .fold(0.0, f64::max)
+            let square = |c: usize| (high[c] - low[c]).powi(2);
+            body.coordinates(j).map(square).sum::<f64>().sqrt()
         };
-        let mut joints: Vec<bool> = (0..body.joints().len())
-            .map(|j| range(j) > MOVES_RAD)
-            .collect();
-        for chain in [body.trunk(), body.neck()] {
-            let moves = chain.iter().map(|&j| range(j)).sum::<f64>() > MOVES_RAD;
-            chain.into_iter().for_each(|j| joints[j] = moves);
+        let ranges: Vec<f64> = (0..body.joints().len()).map(range).collect();
+        let mut joints: Vec<bool> = ranges.iter().map(|range| *range > MOVES_RAD).collect();
+        for name in PARTS {
+            let own = part(body, name);
+            let moves = own.iter().map(|&j| ranges[j]).sum::<f64>() > MOVES_RAD;
+            own.into_iter().for_each(|j| joints[j] = moves);
         }
+        let of_joints = joints.iter().zip(ranges);
+        let stakes = of_joints.map(|(moves, range)| if *moves { range } else { 0.0 });
         Self {
+            stakes: normalised(stakes.collect()),
             joints,
             root: travels || heights[1] - heights[0] > TRAVELS,
         }
@@ -153,6 +166,15 @@ impl Mask {
         names.extend(single.filter(moves).map(|j| body.joints()[j].name.clone()));
         names
     }
+}
+
+/// Shares of the whole; none of nothing.
+fn normalised(mut shares: Vec<f64>) -> Vec<f64> {
+    let whole: f64 = shares.iter().sum();
+    if whole > 0.0 {
+        shares.iter_mut().for_each(|share| *share /= whole);
+    }
+    shares
 }
 
 /// The joint of this name.

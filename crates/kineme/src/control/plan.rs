@@ -50,7 +50,8 @@ pub struct Planned {
     pub start_secs: f64,
     /// How often it is done; of a cyclic one how many cycles.
     pub repeat: u32,
-    /// Names of parts (`left_arm right_arm trunk head left_leg right_leg`) or joints; none: those that the primitive moves.
+    /// Names of parts (`left_arm right_arm trunk head left_leg right_leg`) or joints; none: the parts that the primitive
+    /// moves.
     pub joints: Vec<String>,
     /// Where to.
     pub aim: Aiming,

@@ -114,8 +114,11 @@ fn behaviors_on_other_joints_do_not_disturb_one_another_and_the_rest_holds() {
         start_secs: 0.3,
         ..Planned::new("raise")
     };
-    let right = coordinates(&vocabulary, &["right_shoulder", "right_elbow"]);
-    let left = coordinates(&vocabulary, &["left_shoulder", "left_elbow"]);
+    let right = coordinates(
+        &vocabulary,
+        &["right_shoulder", "right_elbow", "right_wrist"],
+    );
+    let left = coordinates(&vocabulary, &["left_shoulder", "left_elbow", "left_wrist"]);
     for arbitration in [Arbitration::Priority, Arbitration::Superposition] {
         let with = |behaviors| Plan {
             arbitration,
@@ -235,37 +238,66 @@ fn a_movement_that_is_interrupted_is_resumed_and_completed() {
 }
 
 #[test]
-fn a_joint_that_is_given_back_goes_on_with_what_runs() {
-    // The reach loses its arm to the wave while its trunk goes on; afterwards the arm is where the reach has come to.
+fn what_loses_some_joints_goes_on_and_what_loses_most_waits() {
     let vocabulary = vocabulary_of(of_adonis());
     let start = resting(&vocabulary);
-    let reach = || Planned {
-        repeat: 5,
-        ..Planned::new("reach")
+    let low = |name: &str| Planned {
+        repeat: 4,
+        ..Planned::new(name)
     };
-    let wave = Planned {
+    let high = |name: &str| Planned {
         priority: 1,
         start_secs: 0.4,
-        ..Planned::new("wave")
+        ..Planned::new(name)
     };
     let with = |behaviors| Plan {
-        seconds: 4.0,
+        seconds: 7.0,
         ..plan(behaviors)
     };
-    let both = run(&vocabulary, &with(vec![reach(), wave]), &start);
-    let alone = run(&vocabulary, &with(vec![reach()]), &start);
-    let trunk = coordinates(&vocabulary, &["waist"]);
-    let mut parted = false;
+    let right = coordinates(
+        &vocabulary,
+        &["right_shoulder", "right_elbow", "right_wrist"],
+    );
+    // Walking loses one arm of two: the other goes on as if nothing were, and the one that is given back joins it.
+    let both = run(&vocabulary, &with(vec![low("walk"), high("wave")]), &start);
+    let alone = run(&vocabulary, &with(vec![low("walk")]), &start);
+    let mut parted = 0.0_f64;
     for (f, (a, b)) in both.iter().zip(&alone).enumerate() {
-        for &c in &trunk {
-            assert_eq!(a.pose[c], b.pose[c], "the trunk goes on");
+        for c in 0..start.pose.len() {
+            if right.contains(&c) {
+                parted = parted.max((a.pose[c] - b.pose[c]).abs());
+            } else {
+                assert_eq!(a.pose[c], b.pose[c], "frame {f}");
+            }
         }
-        parted |= gap(&a.pose, &b.pose) > 0.3;
+        assert_eq!(a.root, b.root, "frame {f}");
         if f > 3 * 120 {
             assert_eq!(a.pose, b.pose, "frame {f}");
         }
     }
-    assert!(parted);
+    assert!(parted > 0.3);
+    // A reach without its arm is none: its trunk waits, too.
+    let later = Planned {
+        start_secs: 1.2,
+        ..high("wave")
+    };
+    let both = run(&vocabulary, &with(vec![low("reach"), later]), &start);
+    let waist = coordinates(&vocabulary, &["waist"]);
+    let turned = |from: usize, to: usize| {
+        let turned = waist
+            .iter()
+            .map(|&c| (both[from].pose[c] - both[to].pose[c]).abs());
+        turned.fold(0.0, f64::max)
+    };
+    assert!((0..144).any(|f| turned(0, f) > 0.02));
+    assert_eq!(turned(200, 250), 0.0);
+    let end = &both[both.len() - 1].pose;
+    assert!(
+        gap(
+            end,
+            &run(&vocabulary, &with(vec![low("reach")]), &start)[800].pose
+        ) < 1e-9
+    );
 }
 
 #[test]
@@ -285,11 +317,14 @@ fn the_winner_has_the_whole_body() {
             ..plan(vec![one("wave", 1.0, 0.0), one("raise", weight, 0.3)])
         };
         let mut c = controller(&vocabulary, &asked, &start, &ControlSettings::default());
+        let mut idle = 0;
         while !c.finished() {
             c.tick(None, None);
             let moving = c.active().iter().filter(|a| a.weight > 0.0).count();
-            assert_eq!(moving, usize::from(!c.active().is_empty()));
+            assert!(moving <= 1);
+            idle += usize::from(moving == 0 && !c.active().is_empty());
         }
+        assert!(idle <= 1, "nobody moves for {idle} ticks");
         let ran: Vec<&str> = c.ran().iter().map(|r| r.primitive.as_str()).collect();
         let wanted: &[&str] = if wins {
             &["wave", "raise", "wave"]
@@ -459,7 +494,8 @@ fn joints_that_nobody_wants_go_back_to_rest_if_told_to() {
             if c.command().finished && secs[0] == 0.0 {
                 secs[0] = c.secs();
             }
-            if secs[0] > 0.0 && secs[1] == 0.0 && gap(&before, &c.command().pose) > 1e-6 {
+            let later = secs[0] > 0.0 && c.secs() > secs[0] + 0.5;
+            if later && secs[1] == 0.0 && gap(&before, &c.command().pose) > 1e-6 {
                 secs[1] = c.secs();
             }
         }
@@ -521,7 +557,7 @@ fn planned() -> impl Strategy<Value = Planned> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
     fn whatever_is_planned_no_command_jumps(

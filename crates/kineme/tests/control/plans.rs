@@ -54,7 +54,7 @@ fn what_no_plan_may_ask_for_is_refused_with_its_place() {
         check(&|p| p.seconds = seconds, Place::Plan, "seconds");
     }
     check(
-        &|p| p.behaviors[1].primitive = "waev".into(),
+        &|p| p.behaviors[1].primitive = "wavee".into(),
         second,
         "nearest: `wave`",
     );
