@@ -65,7 +65,11 @@ pub fn mjcf(body: &Skeleton, settings: &SimSettings) -> String {
          <geom type=\"ellipsoid\" mass=\"0\" contype=\"0\" conaffinity=\"0\"/>\n  </default>\n  <worldbody>\n",
         escaped(body.name()),
         settings.step_secs,
-        if settings.joint_limits { "enable" } else { "disable" },
+        if settings.joint_limits {
+            "enable"
+        } else {
+            "disable"
+        },
         settings.armature,
     );
     let mut hinges = Vec::new();
@@ -221,7 +225,11 @@ fn ellipsoid(link: &Link) -> (Vector3<f64>, UnitQuaternion<f64>) {
             .sqrt()
             .max(THIN)
     };
-    let axes = Vector3::new(half(i.x, i.y, i.z), half(i.y, i.z, i.x), half(i.z, i.x, i.y));
+    let axes = Vector3::new(
+        half(i.x, i.y, i.z),
+        half(i.y, i.z, i.x),
+        half(i.z, i.x, i.y),
+    );
     let mut frame = eigen.eigenvectors;
     if frame.determinant() < 0.0 {
         frame.set_column(2, &-frame.column(2).into_owned());

@@ -5,7 +5,7 @@ use kineme::skeleton::{ClinicalAxes, Range};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// Postures of each clinical angle, ends included, among which [`Triple::between`] looks for the lock.
-const POSTURES: usize = 9;
+const POSTURES: usize = 5;
 /// The share of a joint's ranges, about the neutral posture, in which people move most.
 const USUAL: f64 = 0.5;
 /// Cosine of the middle angle below which rates are damped: 3 degrees from the lock.
@@ -90,9 +90,8 @@ impl Triple {
         let near = |angles: [f64; 3]| -> [f64; 3] {
             std::array::from_fn(|i| previous[i] + wrap(angles[i] - previous[i]))
         };
-        let far = |angles: &[f64; 3]| -> f64 {
-            (0..3).map(|i| (angles[i] - previous[i]).powi(2)).sum()
-        };
+        let far =
+            |angles: &[f64; 3]| -> f64 { (0..3).map(|i| (angles[i] - previous[i]).powi(2)).sum() };
         let (one, other) = (near([a, b, c]), near([a + pi, pi - b, c + pi]));
         if far(&other) < far(&one) { other } else { one }
     }
@@ -116,11 +115,9 @@ impl Triple {
         }
         // Damped least squares.
         let square = matrix.transpose() * matrix + Matrix3::identity() * DAMPING;
-        let rates = square
-            .try_inverse()
-            .map_or_else(Vector3::zeros, |inverse| {
-                inverse * matrix.transpose() * angular
-            });
+        let rates = square.try_inverse().map_or_else(Vector3::zeros, |inverse| {
+            inverse * matrix.transpose() * angular
+        });
         rates.into()
     }
 
