@@ -79,13 +79,19 @@ pub fn neutral(name: &str, rest: &mut [Rest]) -> Result<Vec<f64>> {
 /// Sets the offsets of joints from their places, and where their bones end: where the next part begins, else as far
 /// beyond the centre of mass as that lies away.
 fn link(rest: &mut [Rest]) {
+    // The first child of each joint: from behind, the first comes last.
+    let mut next: Vec<Option<usize>> = vec![None; rest.len()];
+    for j in (0..rest.len()).rev() {
+        if let Some(parent) = rest[j].joint.parent {
+            next[parent] = Some(j);
+        }
+    }
     for j in 0..rest.len() {
         rest[j].joint.offset = match rest[j].joint.parent {
             Some(p) => rest[j].place - rest[p].place,
             None => Vector3::zeros(),
         };
-        let next = (j + 1..rest.len()).find(|&k| rest[k].joint.parent == Some(j));
-        rest[j].joint.tip = match next {
+        rest[j].joint.tip = match next[j] {
             Some(next) => rest[next].place - rest[j].place,
             None => 2.0 * rest[j].joint.link.center,
         };

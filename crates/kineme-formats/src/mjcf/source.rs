@@ -11,6 +11,9 @@ use crate::sheet::quoted;
 /// Elements of a model at most: the largest robots have some thousand.
 const ELEMENTS: u32 = 1_000_000;
 
+/// The greatest number (metres, radians, degrees, kilograms) that a model can mean.
+const GREATEST: f64 = 1e9;
+
 /// A file of a model: its name, and its text.
 pub struct Text {
     pub name: String,
@@ -130,7 +133,7 @@ impl<'t> Sources<'t> {
     ) -> Result<[f64; N]> {
         let numbers: Option<Vec<f64>> = text
             .split_ascii_whitespace()
-            .map(|word| word.parse::<f64>().ok().filter(|x| x.is_finite()))
+            .map(|word| word.parse::<f64>().ok().filter(|x| x.abs() <= GREATEST))
             .collect();
         numbers
             .and_then(|n| <[f64; N]>::try_from(n).ok())

@@ -46,6 +46,9 @@ pub struct Tree {
     pub warnings: Vec<String>,
 }
 
+/// Bodies and hinges of a model at most; the largest humanoids with hands have some hundred.
+const MOST: usize = 2000;
+
 /// Attributes of `joint` by class; a class has those of the classes around it.
 type Classes<'a> = BTreeMap<String, BTreeMap<&'a str, &'a str>>;
 
@@ -74,6 +77,7 @@ pub fn tree(sources: &Sources<'_>) -> Result<Tree> {
         compiler,
         classes,
         tree: Tree::default(),
+        hinges: 0,
     };
     for section in sections {
         if section.has_tag_name("worldbody") {
@@ -161,6 +165,7 @@ struct Reader<'a, 't> {
     compiler: Compiler,
     classes: Classes<'a>,
     tree: Tree,
+    hinges: usize,
 }
 
 /// Elements that are still to be read, and where they stand.
@@ -186,6 +191,10 @@ impl<'a, 't> Reader<'a, 't> {
         }];
         while let Some(mut around) = open.pop() {
             if around.node.has_tag_name("body") {
+                if self.tree.bodies.len() >= MOST {
+                    let found = format!("more than {MOST} bodies");
+                    return Err(self.sources.error(around.node, found, "a robot"));
+                }
                 around.body = Some(self.body(&around));
             }
             let mut inside = Vec::new();
@@ -310,6 +319,11 @@ impl<'a, 't> Reader<'a, 't> {
                 high: TURN,
             },
         };
+        self.hinges += 1;
+        if self.hinges > MOST {
+            let found = format!("more than {MOST} hinges");
+            return Err(sources.error(node, found, "a robot"));
+        }
         self.tree.bodies[body].hinges.push(Hinge {
             name: name.to_string(),
             anchor: at.position + at.rotation * anchor,
