@@ -40,9 +40,13 @@ impl<'t> Document<'t> {
         found: impl Into<String>,
         expected: impl Into<String>,
     ) -> FormatError {
+        FormatError::new(self.file, Place::Line(self.line(span)), found, expected)
+    }
+
+    /// The line on which something begins, counted from 1.
+    pub fn line(&self, span: Range<usize>) -> usize {
         let before = &self.text.as_bytes()[..span.start.min(self.text.len())];
-        let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
-        FormatError::new(self.file, Place::Line(line), found, expected)
+        1 + before.iter().filter(|&&b| b == b'\n').count()
     }
 
     /// Refuses keys that are not in `known`.
@@ -92,6 +96,20 @@ impl<'t> Document<'t> {
             let written = self.text.get(value.span()).unwrap_or_default();
             self.error(value.span(), quoted(written), "a finite number")
         })
+    }
+
+    /// A whole number that the type can hold.
+    pub fn whole<T: TryFrom<i64>>(&self, value: &Value<'t>) -> Result<T> {
+        let DeValue::Integer(int) = value.get_ref() else {
+            return Err(self.wrong_type(value, "a whole number"));
+        };
+        i64::from_str_radix(int.as_str(), int.radix())
+            .ok()
+            .and_then(|i| T::try_from(i).ok())
+            .ok_or_else(|| {
+                let written = self.text.get(value.span()).unwrap_or_default();
+                self.error(value.span(), quoted(written), "a whole number in range")
+            })
     }
 
     /// The items of an array.

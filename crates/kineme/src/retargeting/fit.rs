@@ -6,11 +6,12 @@ use std::sync::Arc;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::anatomy::Anatomy;
+use super::fitting::{Fitting, carriers, leg_length};
+use super::hinges::Start;
 use super::landmarks::Landmarks;
 use super::own::own_motion;
 use super::profile::{Profile, RoleMap};
-use crate::error::Result;
-use crate::math::rotation::{exp, log};
+use crate::error::{Error, Result};
 use crate::motion::{Motion, Recording};
 use crate::skeleton::{Role, Root, Skeleton, adonis, ares};
 
@@ -91,16 +92,12 @@ pub fn transfer(motion: &Motion, body: &Arc<Skeleton>) -> Result<(Motion, Vec<Ro
     if from == body {
         return Ok((motion.clone(), Vec::new()));
     }
-    // At the neutral pose the frames of all bodies agree, so a joint's world orientation is its part's anatomical frame.
-    let carriers: BTreeMap<Role, usize> = Role::ALL
-        .iter()
-        .filter_map(|&role| Some((anatomical(role), *from.joints_of(role).last()?)))
-        .collect();
+    let carriers = carriers(from);
     let mut parts: BTreeMap<Role, Vec<UnitQuaternion<f64>>> = BTreeMap::new();
     let mut hips = Vec::with_capacity(motion.frames());
     for f in 0..motion.frames() {
         let frames = motion.frames_at(f);
-        for (&role, &joint) in &carriers {
+        for &(role, joint) in &carriers {
             parts.entry(role).or_default().push(frames[joint].rotation);
         }
         hips.push(motion.root(f).position);
@@ -113,37 +110,33 @@ pub fn transfer(motion: &Motion, body: &Arc<Skeleton>) -> Result<(Motion, Vec<Ro
     fit(motion.name(), motion.rate_hz(), &anatomy, body)
 }
 
-/// The role under which the anatomy keeps a part: the whole trunk up to the thorax is `Chest`, neck and head `Head`.
-fn anatomical(role: Role) -> Role {
-    match role {
-        Role::Spine | Role::UpperChest => Role::Chest,
-        Role::Neck => Role::Head,
-        other => other,
+/// The pose at which parts of `body` come nearest these orientations in the world; the trunk's is `Chest`, neck and head
+/// are `Head`. Parts that are not named stay neutral. Hinges keep within their ranges where several move one part.
+///
+/// # Errors
+/// When the body moves none of these parts.
+pub fn posture(
+    body: &Arc<Skeleton>,
+    parts: &BTreeMap<Role, UnitQuaternion<f64>>,
+) -> Result<Vec<f64>> {
+    let mut fitting = Fitting::of(body);
+    let targets: Vec<Option<UnitQuaternion<f64>>> = fitting
+        .parts()
+        .iter()
+        .map(|role| parts.get(role).copied())
+        .collect();
+    if !parts.is_empty() && targets.iter().all(Option::is_none) {
+        let names: Vec<&str> = parts.keys().map(|role| role.name()).collect();
+        return Err(Error::unsupported(format!(
+            "{} moves none of {}",
+            body.name(),
+            names.join(", ")
+        )));
     }
-}
-
-fn leg_length(body: &Skeleton) -> f64 {
-    [Role::LeftLowerLeg, Role::LeftFoot]
-        .into_iter()
-        .filter_map(|r| body.joints_of(r).first().copied())
-        .map(|j| body.joints()[j].offset.norm())
-        .sum()
-}
-
-/// The chain of joints that brings each anatomical part about, from the root outward.
-fn chains(body: &Skeleton) -> Vec<(Role, Vec<usize>)> {
-    let mut chains = vec![
-        (Role::Hips, body.joints_of(Role::Hips)),
-        (Role::Chest, body.trunk()),
-        (Role::Head, body.neck()),
-    ];
-    for &role in Role::ALL {
-        if anatomical(role) == role && chains.iter().all(|(r, _)| *r != role) {
-            chains.push((role, body.joints_of(role)));
-        }
-    }
-    chains.retain(|(_, joints)| joints.iter().any(|&j| body.joints()[j].kind.dof() > 0));
-    chains
+    let mut pose = body.neutral();
+    let heading = UnitQuaternion::identity();
+    fitting.fit(&heading, |part| targets[part], Start::Anywhere, &mut pose);
+    Ok(pose)
 }
 
 /// The coordinates that bring every part nearest its anatomical frame, from the root outward, each joint starting from
@@ -154,28 +147,22 @@ fn fit(
     anatomy: &Anatomy,
     body: &Arc<Skeleton>,
 ) -> Result<(Motion, Vec<Role>)> {
-    let chains = chains(body);
-    let scale = leg_length(body) / anatomy.scale.max(1e-9);
-    let goals: Vec<Option<Goal>> = (0..body.joints().len())
-        .map(|j| Goal::of(j, &chains, anatomy, body))
+    let mut fitting = Fitting::of(body);
+    let targets: Vec<Option<&[UnitQuaternion<f64>]>> = fitting
+        .parts()
+        .iter()
+        .map(|role| anatomy.parts.get(role).map(Vec::as_slice))
         .collect();
+    let scale = leg_length(body) / anatomy.scale.max(1e-9);
     let mut poses = Vec::with_capacity(anatomy.hips.len() * body.dof());
     let mut roots = Vec::with_capacity(anatomy.hips.len());
     let mut pose = body.neutral();
     let mut before: Option<Vec<f64>> = None;
-    let mut turned = vec![UnitQuaternion::identity(); body.joints().len()];
     for (f, (hips, yaw)) in anatomy.hips.iter().zip(anatomy.headings()).enumerate() {
         let heading = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
-        for (j, joint) in body.joints().iter().enumerate() {
-            let base = joint.parent.map_or(heading, |p| turned[p]);
-            turned[j] = match &goals[j] {
-                Some(goal) => {
-                    let local = goal.rotation(&base, f);
-                    base * body.set_rotation(&mut pose, j, &local, before.as_deref())
-                }
-                None => base * body.rotation(j, &pose[body.coordinates(j)]),
-            };
-        }
+        let target = |part: usize| targets[part].map(|turns| turns[f]);
+        let start = before.as_deref().map_or(Start::Anywhere, Start::After);
+        fitting.fit(&heading, target, start, &mut pose);
         poses.extend_from_slice(&pose);
         before.get_or_insert_with(Vec::new).clone_from(&pose);
         roots.push(Root {
@@ -183,56 +170,14 @@ fn fit(
             yaw,
         });
     }
-    let unobserved = chains
+    let unobserved = fitting
+        .parts()
         .iter()
-        .map(|(role, _)| *role)
+        .copied()
         .filter(|role| !anatomy.parts.contains_key(role))
         .collect();
     Ok((
         Motion::new(name, Arc::clone(body), rate_hz, poses, roots)?,
         unobserved,
     ))
-}
-
-/// What a joint has to bring about.
-struct Goal<'a> {
-    /// Orientation of the part at the end of its chain, one a frame.
-    target: &'a [UnitQuaternion<f64>],
-    /// Its share of the turning that it and the joints after it in the chain still have to do; 1 for the last.
-    share: f64,
-}
-
-impl<'a> Goal<'a> {
-    fn of(
-        joint: usize,
-        chains: &[(Role, Vec<usize>)],
-        anatomy: &'a Anatomy,
-        body: &Skeleton,
-    ) -> Option<Self> {
-        let (role, chain) = chains.iter().find(|(_, joints)| joints.contains(&joint))?;
-        let left: f64 = chain
-            .iter()
-            .filter(|&&k| k >= joint)
-            .map(|&k| body.joints()[k].share)
-            .sum();
-        let last = chain.last() == Some(&joint);
-        Some(Self {
-            target: anatomy.parts.get(role)?,
-            share: if last {
-                1.0
-            } else {
-                body.joints()[joint].share / left.max(1e-12)
-            },
-        })
-    }
-
-    /// The rotation in the parent's frame `base` that does the joint's share at frame `f`.
-    fn rotation(&self, base: &UnitQuaternion<f64>, f: usize) -> UnitQuaternion<f64> {
-        let local = base.inverse() * self.target[f];
-        if self.share < 1.0 {
-            exp(&(log(&local) * self.share))
-        } else {
-            local
-        }
-    }
 }
