@@ -10,10 +10,10 @@ use kineme_formats::{output, script};
 use serde_json::json;
 
 use crate::args::{ChoreographArgs, Global, Written};
+use crate::bodies::built_in;
 use crate::describe;
 use crate::failure::{Failure, print};
 use crate::outputs::{existing, mirrored, refuse_existing, unwritten};
-use crate::source::body;
 use crate::vocabularies::{
     self, Lesson, calibrated, check_cyclic, check_out, learn, modelling, print_notes, read_bytes,
 };
@@ -44,7 +44,7 @@ pub fn run(args: &ChoreographArgs, global: &Global) -> Result<u8, Failure> {
         ))
         .hint("leave -o out; --motions DIR writes the animations"));
     }
-    let body = body(args.body.as_deref().unwrap_or(&script.body))?;
+    let body = built_in(args.body.as_deref().unwrap_or(&script.body))?;
     let performed = performed(&script, &shown, &body, args.rate)?;
     let paths = args
         .motions

@@ -11,9 +11,10 @@ use kineme_formats::{bvh, npz, output, positions};
 use serde_json::json;
 
 use crate::args::{ConvertArgs, Global, Written};
+use crate::bodies;
 use crate::failure::{Failure, print};
 use crate::outputs::{existing, mirrored, refuse_existing, unwritten};
-use crate::source::{Source, body, print_warnings};
+use crate::source::{Source, print_warnings};
 
 /// What is asked of every motion.
 struct Job<'a> {
@@ -49,7 +50,7 @@ struct Made {
 pub fn run(args: &ConvertArgs, global: &Global) -> Result<u8, Failure> {
     let format = format(args)?;
     let what = what(args, format)?;
-    let body = args.body.as_deref().map(body).transpose()?;
+    let body = args.body.as_deref().map(bodies::any).transpose()?;
     let source = Source::open(std::slice::from_ref(&args.input), &args.read)?;
     let job = Job {
         source: &source,

@@ -11,11 +11,12 @@ use kineme_formats::{FormatError, Place, marks, output, vocabulary};
 use kineme_paper::figures::{Report, summary};
 
 use crate::args::{ClusteringName, DeriveArgs, Global, SecondLevelName, SegmenterName};
+use crate::bodies::built_in;
 use crate::failure::{Failure, complain, print};
 use crate::findings::{self, Seconds};
 use crate::outputs::{existing, refuse_existing, unwritten};
 use crate::progress;
-use crate::source::{Source, body, print_warnings};
+use crate::source::{Source, print_warnings};
 use crate::vocabularies::{calibrated, print_notes};
 
 /// A motion of the body, and where it came from.
@@ -42,7 +43,7 @@ pub fn run(args: &DeriveArgs, global: &Global) -> Result<u8, Failure> {
     refuse_existing(written.iter().map(PathBuf::as_path), global)?;
     let mut settings = settings(args, global)?;
     let marks = args.marks.as_deref().map(read_marks).transpose()?;
-    let body = body(&args.body)?;
+    let body = built_in(&args.body)?;
 
     let begun = Instant::now();
     let source = Source::open(&args.inputs, &args.read)?;

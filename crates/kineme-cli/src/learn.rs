@@ -5,17 +5,17 @@ use std::sync::Arc;
 use kineme::{Behavior, Modelling, Transitions, Vocabulary};
 
 use crate::args::{Global, LearnArgs};
+use crate::bodies::built_in;
 use crate::describe;
 use crate::failure::Failure;
 use crate::labelled::{Example, Manifest};
-use crate::source::body;
 use crate::vocabularies::{
     self, Lesson, calibrated, check_cyclic, check_out, learn, modelling, print_notes,
 };
 
 pub fn run(args: &LearnArgs, global: &Global) -> Result<u8, Failure> {
     check_out(&args.out, "vocabulary", global)?;
-    let body = body(&args.body)?;
+    let body = built_in(&args.body)?;
     let modelling = modelling(&args.model, &body)?;
     let manifest = Manifest::open(&args.manifest, args.root.as_deref())?;
     let labels = manifest.labels();

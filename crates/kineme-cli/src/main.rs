@@ -1,6 +1,7 @@
 //! The binary `kineme`: verbs over the library, with messages, progress and exit codes.
 
 mod args;
+mod bodies;
 mod choreograph;
 mod classify;
 mod control;

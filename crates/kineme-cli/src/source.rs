@@ -340,22 +340,6 @@ pub fn print_warnings<'a>(warned: impl IntoIterator<Item = (&'a str, &'a [String
     warnings.print();
 }
 
-/// The body that `--body` names.
-pub fn body(name: &str) -> Result<Arc<Skeleton>, Failure> {
-    let lower = name.to_ascii_lowercase();
-    if [".xml", ".mjcf", ".urdf"]
-        .iter()
-        .any(|e| lower.ends_with(e))
-    {
-        return Err(Failure::usage(format!(
-            "`{name}`: bodies from MJCF and URDF files are not in this version"
-        ))
-        .hint("--body ares or --body adonis"));
-    }
-    let skeleton = kineme::body(name).map_err(|e| Failure::usage(e.to_string()))?;
-    Ok(Arc::new(skeleton))
-}
-
 /// The built-in profile of this name, else the file.
 fn profile(name: &str) -> Result<UserProfile, Failure> {
     let unknown = match Profile::named(name) {

@@ -42,6 +42,8 @@ fn exit_codes_say_what_went_wrong_and_hints_what_to_do() {
         ("derive arms.bvh -o v --shape 2", 2, "0 to 1"),
         ("derive arms.bvh -o v --body zeus", 2, "nearest: `ares`"),
         ("derive arms.bvh -o v --body g1.xml", 2, "hint: --body ares"),
+        ("convert arms.bvh a.csv --body g1.urdf", 2, "hint: MuJoCo"),
+        ("convert arms.bvh a.csv --body no.xml", 3, "no.xml"),
         ("derive arms.bvh -o - --json", 2, "stdout"),
         ("derive arms.bvh -o v --marks no.csv", 3, "no.csv"),
         ("convert arms.bvh a.csv", 2, "hint: --body ares"),
@@ -90,6 +92,42 @@ fn help_teaches_this_versions_verbs_and_no_others() {
             assert!(!help.contains(later), "{arguments:?} mentions {later}");
         }
     }
+}
+
+#[test]
+fn a_movement_is_converted_to_a_robot_of_hinges() {
+    let folder = folder();
+    let limb = |side: &str, y: f64| {
+        format!(
+            "<body name='{side}_arm' pos='0 {y} 0.5'><joint name='{side}_shoulder_pitch' axis='0 1 0' range='-180 180'/>\
+             <joint name='{side}_shoulder_roll' axis='1 0 0' range='-180 180'/>\
+             <joint name='{side}_shoulder_yaw' range='-180 180'/>\
+             <body name='{side}_forearm' pos='0 0 -0.3'><joint name='{side}_elbow' axis='0 -1 0' range='0 150'/>\
+             <inertial pos='0 0 -0.1' mass='1' diaginertia='1 1 1'/></body></body>"
+        )
+    };
+    let robot = format!(
+        "<mujoco model='pair'><worldbody><body name='base'>{}{}</body></worldbody></mujoco>",
+        limb("left", 0.2),
+        limb("right", -0.2)
+    );
+    fs::write(folder.path().join("pair.xml"), robot).expect("a file");
+    let run = kineme(
+        folder.path(),
+        &["convert", "arms.bvh", "a.csv", "--body", "pair.xml"],
+    );
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(run.err.contains("parts guessed"), "{}", run.err);
+    let table = fs::read_to_string(folder.path().join("a.csv")).expect("a table");
+    let header = table.lines().next().unwrap_or_default();
+    let wanted =
+        "left_shoulder_pitch,left_shoulder_roll,left_shoulder_yaw,left_elbow,right_shoulder_pitch";
+    assert!(header.contains(wanted), "{header}");
+    let raised = table.lines().skip(1).any(|row| {
+        let cells = row.split(',').skip(5).filter_map(|c| c.parse::<f64>().ok());
+        cells.fold(0f64, |m, x| m.max(x.abs())) > 0.5
+    });
+    assert!(raised, "the arms of arms.bvh move");
 }
 
 const AMC: &str = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 1 0 0 0 0\nb 5\n";

@@ -34,6 +34,7 @@ pub mod error;
 pub mod input;
 pub mod manifest;
 pub mod marks;
+pub mod mjcf;
 pub mod npz;
 pub mod output;
 pub mod plan;

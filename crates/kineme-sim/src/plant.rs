@@ -68,7 +68,8 @@ pub struct Plant {
 }
 
 impl Plant {
-    /// A model with its gains, which come out of the mass matrix where the hinges have these angles (radians).
+    /// A model with its gains, which come out of the mass matrix: of its diagonal the greatest that the hinges have in
+    /// these postures (their angles, radians).
     ///
     /// # Errors
     /// When a joint is neither hinge nor slider, when not every joint has one drive in the order of the joints, when
@@ -77,7 +78,7 @@ impl Plant {
         model: MjModel,
         servo: Servo,
         settings: &SimSettings,
-        middle: impl FnOnce(&MjModel) -> Result<Vec<f64>>,
+        postures: &[Vec<f64>],
     ) -> Result<Self> {
         let count = model.jnt_type().len();
         if let Some(j) = model
@@ -98,10 +99,9 @@ impl Plant {
             ));
         }
         let mut model = Box::new(model);
-        let middle = middle(&model)?;
         let stiffness = (std::f64::consts::TAU * settings.frequency_hz).powi(2);
         let damping = 2.0 * settings.damping_ratio * stiffness.sqrt();
-        let inertias = inertias(&model, &middle)?;
+        let inertias = inertias(&model, postures)?;
         let mut gains = Vec::with_capacity(count);
         for (j, inertia) in inertias.iter().enumerate() {
             if !(inertia.is_finite() && *inertia > 0.0) {
@@ -288,15 +288,21 @@ impl Plant {
     }
 }
 
-/// The diagonal of the mass matrix at these angles, kg m^2.
-fn inertias(model: &MjModel, angles: &[f64]) -> Result<Vec<f64>> {
+/// The greatest entries of the mass matrix' diagonal in these postures, kg m^2.
+fn inertias(model: &MjModel, postures: &[Vec<f64>]) -> Result<Vec<f64>> {
     let mut data = MjData::try_new(model).map_err(engine)?;
-    data.qpos_mut().copy_from_slice(angles);
-    data.fwd_position();
-    let count = angles.len();
+    let count = model.jnt_type().len();
     let mut matrix = vec![0.0; count * count];
-    data.full_m(&mut matrix).map_err(engine)?;
-    Ok((0..count).map(|i| matrix[i * count + i]).collect())
+    let mut greatest = vec![0.0; count];
+    for angles in postures {
+        data.qpos_mut().copy_from_slice(angles);
+        data.fwd_position();
+        data.full_m(&mut matrix).map_err(engine)?;
+        for (i, most) in greatest.iter_mut().enumerate() {
+            *most = f64::max(*most, matrix[i * count + i]);
+        }
+    }
+    Ok(greatest)
 }
 
 /// An error of the engine in ours.

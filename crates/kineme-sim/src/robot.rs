@@ -14,6 +14,9 @@ use crate::mjcf::mjcf;
 use crate::plant::{Plant, Push, Target, engine};
 use crate::settings::{Servo, SimSettings};
 
+/// Postures among which each hinge's greatest inertia is sought.
+const POSTURES: usize = 64;
+
 /// A push that goes on.
 #[derive(Debug, Clone, Copy)]
 struct Pushing {
@@ -95,12 +98,13 @@ impl SimulatedRobot {
         let still = vec![0.0; body.dof()];
         let start = model.qpos0().to_vec();
         let mut rates = vec![0.0; count];
-        let middle = |_: &MjModel| {
+        let mut postures = Vec::with_capacity(POSTURES);
+        for k in 0..POSTURES {
             let mut angles = start.clone();
-            hinges.angles(&mid_range(body), &still, &mut angles, &mut rates);
-            Ok(angles)
-        };
-        let plant = Plant::new(model, servo, settings, middle)?;
+            hinges.angles(&within(body, k), &still, &mut angles, &mut rates);
+            postures.push(angles);
+        }
+        let plant = Plant::new(model, servo, settings, &postures)?;
         let mut robot = Self {
             body: Arc::clone(body),
             settings: settings.clone(),
@@ -284,12 +288,26 @@ impl Robot for SimulatedRobot {
     }
 }
 
-/// The middle of every joint's range: there a ball's coordinates are zero.
-fn mid_range(body: &Skeleton) -> Vec<f64> {
+/// The `k`th of postures that spread evenly over the limits of a body, the first in the middle of them all; the root
+/// stays upright.
+fn within(body: &Skeleton, k: usize) -> Vec<f64> {
     let mut pose = vec![0.0; body.dof()];
+    let mut n = 0;
     for (j, joint) in body.joints().iter().enumerate() {
-        if let JointKind::Hinge { range, .. } = &joint.kind {
-            pose[body.coordinates(j).start] = range.middle();
+        let axes = match joint.kind {
+            JointKind::Ball { .. } => {
+                vec![joint.axes.flexion, joint.axes.abduction, joint.axes.axial]
+            }
+            _ => vec![Vector3::x()],
+        };
+        for (range, axis) in body.limits(j).iter().zip(axes) {
+            n += 1;
+            // Additive recurrence: multiples of roots of primes spread evenly (Weyl).
+            let share = (0.5 + k as f64 * (n as f64 + 1.0).sqrt()).fract();
+            let value = range.low + share * (range.high - range.low);
+            for (x, a) in pose[body.coordinates(j)].iter_mut().zip(axis.iter()) {
+                *x += a * value;
+            }
         }
     }
     pose

@@ -5,7 +5,7 @@ use kineme::skeleton::{ClinicalAxes, Range};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// Postures of each clinical angle, ends included, among which [`Triple::between`] looks for the lock.
-const POSTURES: usize = 9;
+const POSTURES: usize = 5;
 /// The share of a joint's ranges, about the neutral posture, in which people move most.
 const USUAL: f64 = 0.5;
 /// Cosine of the middle angle below which rates are damped: 3 degrees from the lock.

@@ -157,8 +157,8 @@ pub struct ConvertArgs {
     /// The file to write, .bvh, .csv or .npz; for a folder or an archive a folder; - is stdout
     #[arg(value_name = "OUT")]
     pub out: PathBuf,
-    /// Express the movement in the joints of this body: ares or adonis
-    #[arg(long, value_name = "NAME")]
+    /// Express the movement in the joints of this body: ares, adonis, or a robot of an MJCF file
+    #[arg(long, value_name = "NAME|FILE")]
     pub body: Option<String>,
     /// Resample to this rate
     #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = rate)]

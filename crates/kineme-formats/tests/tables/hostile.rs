@@ -2,7 +2,9 @@
 
 use kineme_formats::tables::{angles, msr, positions};
 use kineme_formats::vocabulary::VocabularyFile;
-use kineme_formats::{manifest, marks, profile, script, vocabulary};
+use kineme_formats::{
+    FormatError, Place, manifest, marks, mjcf, plan, profile, script, vocabulary,
+};
 use proptest::prelude::*;
 
 /// Feeds the bytes to every reader.
@@ -12,6 +14,9 @@ fn read_by_all(bytes: &[u8]) {
     let _ = marks::parse("a", bytes);
     let _ = profile::parse("a", bytes);
     let _ = manifest::parse("a", bytes);
+    let _ = plan::parse("a", bytes);
+    let alone = |file: &str| Err(FormatError::new(file, Place::File, "nothing", "a file"));
+    let _ = mjcf::parse("a", bytes, &alone, None);
     if let Ok(table) = angles::parse("a", bytes) {
         let again = angles::parse("a", &table.write("a").unwrap()).unwrap();
         assert_eq!(again, table);
@@ -41,6 +46,9 @@ fn whole_files() -> Vec<Vec<u8>> {
         "name = 'p'\nup = 'y'\nunit_metres = 0.01\n[roles]\nhips = 'H'\nhead = ['a', 'b']\n",
         "body = 'a'\n[[exemplar]]\nprimitive = 'p'\nparameters = { h = 1 }\n\
          keys = [{ time = 0 }, { time = 0.5, chest = [1, 2, 3] }]\n",
+        "seconds = 1\n[[behavior]]\nprimitive = 'jab'\n[[rule]]\nwhen = 'a'\nthen = { primitive = 'b' }\n",
+        "<mujoco><worldbody><body name='a'><body name='b' pos='0 0 1'><joint name='h' range='-9 9'/></body></body>\
+         </worldbody></mujoco>",
     ];
     let mut files: Vec<Vec<u8>> = texts.iter().map(|t| t.as_bytes().to_vec()).collect();
     files.push("0.1 0.2 2.5 1.0\n".repeat(40).into_bytes());
@@ -51,7 +59,19 @@ fn whole_files() -> Vec<Vec<u8>> {
 #[test]
 fn deep_nesting_and_long_lines_are_refused() {
     const MANY: usize = 200_000;
-    for text in ["[", "{a=", "a.", "(", ",", "\"", "0 ", "1e"] {
+    for text in [
+        "<body>",
+        "<default>",
+        "<a b='",
+        "[",
+        "{a=",
+        "a.",
+        "(",
+        ",",
+        "\"",
+        "0 ",
+        "1e",
+    ] {
         read_by_all(format!("body = {}", text.repeat(MANY)).as_bytes());
         read_by_all(text.repeat(MANY).as_bytes());
     }

@@ -323,7 +323,7 @@ fn end_part(
     let ahead = if limb.arm {
         -Vector3::z()
     } else {
-        let joint = *body.joints_of(limb.end).first()?;
+        let joint = *body.joints_of(limb.end).last()?;
         body.joints()[joint].tip.try_normalize(1e-9)?
     };
     let pointed = marks

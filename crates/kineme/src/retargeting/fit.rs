@@ -11,7 +11,7 @@ use super::hinges::Start;
 use super::landmarks::Landmarks;
 use super::own::own_motion;
 use super::profile::{Profile, RoleMap};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::motion::{Motion, Recording};
 use crate::skeleton::{Role, Root, Skeleton, adonis, ares};
 
@@ -108,6 +108,35 @@ pub fn transfer(motion: &Motion, body: &Arc<Skeleton>) -> Result<(Motion, Vec<Ro
         scale: leg_length(from),
     };
     fit(motion.name(), motion.rate_hz(), &anatomy, body)
+}
+
+/// The pose at which parts of `body` come nearest these orientations in the world; the trunk's is `Chest`, neck and head
+/// are `Head`. Parts that are not named stay neutral. Hinges keep within their ranges where several move one part.
+///
+/// # Errors
+/// When the body moves none of these parts.
+pub fn posture(
+    body: &Arc<Skeleton>,
+    parts: &BTreeMap<Role, UnitQuaternion<f64>>,
+) -> Result<Vec<f64>> {
+    let mut fitting = Fitting::of(body);
+    let targets: Vec<Option<UnitQuaternion<f64>>> = fitting
+        .parts()
+        .iter()
+        .map(|role| parts.get(role).copied())
+        .collect();
+    if !parts.is_empty() && targets.iter().all(Option::is_none) {
+        let names: Vec<&str> = parts.keys().map(|role| role.name()).collect();
+        return Err(Error::unsupported(format!(
+            "{} moves none of {}",
+            body.name(),
+            names.join(", ")
+        )));
+    }
+    let mut pose = body.neutral();
+    let heading = UnitQuaternion::identity();
+    fitting.fit(&heading, |part| targets[part], Start::Anywhere, &mut pose);
+    Ok(pose)
 }
 
 /// The coordinates that bring every part nearest its anatomical frame, from the root outward, each joint starting from

@@ -92,6 +92,16 @@ const TRUNK: &[(&str, Role)] = &[
     ("head", Role::Head),
 ];
 
+/// A guess at the part that a robot's joint of this name turns: a robot names several hinges alike, and has shoulders for
+/// upper arms and a waist or torso for a chest.
+pub fn guess_role(name: &str) -> Option<Role> {
+    let words = words(name);
+    if side(&words).is_none() && words.iter().any(|w| w == "torso" || w == "waist") {
+        return Some(Role::Chest);
+    }
+    guess(&[name]).joints.into_keys().next()
+}
+
 /// A guess at the roles of joints with these names; the first joint of a role counts.
 pub fn guess(names: &[&str]) -> RoleMap {
     let mut joints = BTreeMap::new();
@@ -131,6 +141,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn hinges_of_robots_are_guessed_one_by_one() {
+        for (name, role) in [
+            ("left_hip_yaw_joint", Some(Role::LeftUpperLeg)),
+            ("left_shoulder_pitch", Some(Role::LeftUpperArm)),
+            ("r_wrist_roll", Some(Role::RightHand)),
+            ("torso", Some(Role::Chest)),
+            ("waist_yaw_joint", Some(Role::Chest)),
+            ("gripper", None),
+        ] {
+            assert_eq!(guess_role(name), role, "{name}");
+        }
+    }
+
+    #[test]
     fn unknown_names_are_guessed_by_their_words() {
         for (name, role) in [
             ("Bip01 L UpperArm", Role::LeftUpperArm),
@@ -141,6 +165,7 @@ mod tests {
             ("left_elbow", Role::LeftLowerArm),
             ("r_shoulder", Role::RightUpperArm),
         ] {
+            assert_eq!(guess_role(name), Some(role), "{name}");
             let map = guess(&[name]);
             assert_eq!(map.joints.keys().collect::<Vec<_>>(), [&role], "{name}");
         }

@@ -16,7 +16,8 @@ mod profile;
 mod transfer;
 
 pub use anatomy::Anatomy;
-pub use fit::{Retargeted, retarget, transfer};
+pub use fit::{Retargeted, posture, retarget, transfer};
+pub use guess::guess_role;
 pub use landmarks::Landmarks;
 pub use profile::{Profile, REQUIRED, RoleMap};
 pub use transfer::{Transfer, Transferred};

@@ -59,7 +59,13 @@ impl Skeleton {
                     joints.len()
                 )));
             }
-            pose[self.coordinates(joints[0]).start] = angle(0);
+            let joint = &self.joints()[joints[0]];
+            // A robot's hinge may count the other way.
+            let sign = match &joint.kind {
+                JointKind::Hinge { axis, .. } if axis.dot(&joint.axes.flexion) < 0.0 => -1.0,
+                _ => 1.0,
+            };
+            pose[self.coordinates(joints[0]).start] = sign * angle(0);
             return Ok(());
         }
         let shares: f64 = joints.iter().map(|&j| self.joints()[j].share).sum();

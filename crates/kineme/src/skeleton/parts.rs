@@ -84,6 +84,26 @@ fn knee_axes(side: Side) -> ClinicalAxes {
     }
 }
 
+impl ClinicalAxes {
+    /// The axes of the joint that moves a part, at the neutral standing pose; those of the trunk for a joint without role.
+    pub fn of(role: Option<Role>) -> Self {
+        use Role::*;
+        let Some(role) = role else {
+            return trunk_axes();
+        };
+        let side = match Role::name(role).starts_with("left") {
+            true => Side::Left,
+            false => Side::Right,
+        };
+        match role {
+            Hips | Spine | Chest | UpperChest | Neck | Head => trunk_axes(),
+            LeftHand | LeftFingers | RightHand | RightFingers => wrist_axes(side),
+            LeftLowerLeg | RightLowerLeg => knee_axes(side),
+            _ => limb_axes(side),
+        }
+    }
+}
+
 /// A ball joint whose reference rotation is the middle of these ranges (degrees).
 pub fn ball(axes: &ClinicalAxes, degrees: [(f64, f64); 3]) -> JointKind {
     let ranges = degrees.map(|(low, high)| Range::degrees(low, high));
