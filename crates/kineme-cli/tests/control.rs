@@ -53,7 +53,13 @@ fn a_plan_is_carried_out_and_what_was_done_is_told_and_written() {
     }
     let refused = kineme(
         at,
-        &["control", "horizontal-waving.kineme", "wave.toml", "-o", "ares.bvh"],
+        &[
+            "control",
+            "horizontal-waving.kineme",
+            "wave.toml",
+            "-o",
+            "ares.bvh",
+        ],
     );
     assert_eq!(refused.code, 2, "an existing file is kept: {}", refused.err);
 }
@@ -86,7 +92,12 @@ fn what_a_plan_may_not_ask_for_is_refused_with_its_line_before_anything_moves() 
     let cases: [(&str, &str, &str, &str); 6] = [
         ("wave-across\"", "wave-acros\"", ":3", "wave-across"),
         ("start = 0.2", "start = -1", ":3", "negative"),
-        ("start = 0.2", "joints = [\"left_leg\"]", ":3", "moves none of"),
+        (
+            "start = 0.2",
+            "joints = [\"left_leg\"]",
+            ":3",
+            "moves none of",
+        ),
         ("start = 0.2", "joints = [\"tail\"]", ":3", "tail"),
         ("start = 1.0", "weight = 0", ":6", "weight"),
         ("seconds = 2.0", "seconds = 0", "", "seconds"),
@@ -94,10 +105,20 @@ fn what_a_plan_may_not_ask_for_is_refused_with_its_line_before_anything_moves() 
     for (old, new, line, says) in cases {
         assert!(WAVE.contains(old), "{old}");
         fs::write(at.join("bad.toml"), WAVE.replacen(old, new, 1)).expect("a plan");
-        let words = ["control", "horizontal-waving.kineme", "bad.toml", "-o", "x.bvh"];
+        let words = [
+            "control",
+            "horizontal-waving.kineme",
+            "bad.toml",
+            "-o",
+            "x.bvh",
+        ];
         let run = kineme(at, &words);
         assert_eq!(run.code, 3, "{new}: {}", run.err);
-        assert!(run.err.contains(&format!("bad.toml{line}")), "{new}: {}", run.err);
+        assert!(
+            run.err.contains(&format!("bad.toml{line}")),
+            "{new}: {}",
+            run.err
+        );
         assert!(run.err.contains(says), "{new}: {}", run.err);
         assert!(!at.join("x.bvh").exists());
     }

@@ -28,7 +28,7 @@ pub enum ServoName {
 Examples:
   kineme control boxing.kineme plan.toml --body adonis         on a body of 20 joint angles
   kineme control boxing.kineme plan.toml --body ares -o ring.bvh
-  kineme control boxing.kineme plan.toml --body g1.xml         on your robot; its joints' roles: --profile
+  kineme control boxing.kineme plan.toml --body g1.xml         on your robot
   kineme control boxing.kineme spar.toml --watch attacker.bvh  answer what another one does
   producer | kineme control boxing.kineme spar.toml --watch -  answer a live stream of joint angles
 A plan:
@@ -55,7 +55,8 @@ pub struct ControlArgs {
     /// The plan
     #[arg(value_name = "PLAN.toml")]
     pub plan: PathBuf,
-    /// The body that moves: ares, adonis or an MJCF file [default: the vocabulary's]
+    /// The body that moves: ares, adonis or an MJCF file, with the profile of its joints beside it (same stem, .toml) unless
+    /// their names tell [default: the vocabulary's]
     #[arg(long, value_name = "NAME|FILE")]
     pub body: Option<String>,
     /// The motion to write, .bvh, .csv or .npz: what the body did

@@ -1,6 +1,6 @@
 //! `kineme control`: a plan of behaviors on a simulated body.
 
-mod bodies;
+mod machines;
 mod told;
 mod watched;
 
@@ -37,7 +37,7 @@ pub fn run(args: &ControlArgs, global: &Global) -> Result<u8, Failure> {
     if watched.is_some() && plan.rules.is_empty() {
         complain("note: nothing answers what is watched: the plan has no [[rule]]");
     }
-    let mut robot = bodies::robot(args, &vocabulary)?;
+    let mut robot = machines::robot(args, &vocabulary)?;
     let begun = Instant::now();
     let performance = perform(&vocabulary, plan, watched, &mut *robot)?;
     let factor = plan.seconds / begun.elapsed().as_secs_f64();

@@ -164,7 +164,10 @@ fn a_robot_of_another_body_does_the_same_with_its_arm() {
         (at(kineme::Role::RightHand) - at(kineme::Role::RightLowerArm)).normalize()
     };
     for frame in (0..300).step_by(10) {
-        let (a, b) = (direction(&as_ares, frame), direction(&as_adonis.done, frame));
+        let (a, b) = (
+            direction(&as_ares, frame),
+            direction(&as_adonis.done, frame),
+        );
         assert!(a.angle(&b) < 0.02, "{frame}: {}", a.angle(&b));
     }
 }
