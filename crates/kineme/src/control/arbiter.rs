@@ -73,12 +73,15 @@ impl Arbiter {
         let mut contenders = contenders.to_vec();
         loop {
             let shares = self.divided(&contenders, before);
-            let stake = |c: &Contender| -> f64 {
+            // Of those that hold nothing there is nothing to take.
+            let crippled = |&k: &usize| {
+                let c: &Contender = &contenders[k];
+                let has = |s: &Shares| s.iter().any(|(behavior, _)| *behavior == c.behavior);
                 let joints = shares.iter().zip(&c.mask.stakes);
-                let held = joints.filter(|(s, _)| s.iter().any(|(b, _)| *b == c.behavior));
-                held.map(|(_, stake)| stake).sum()
+                let stake = |(s, stake): (&Shares, &f64)| if has(s) { *stake } else { 0.0 };
+                shares.iter().any(has) && joints.map(stake).sum::<f64>() < ENOUGH
             };
-            let crippled = (0..contenders.len()).filter(|&k| stake(&contenders[k]) < ENOUGH);
+            let crippled = (0..contenders.len()).filter(crippled);
             let rank = |&k: &usize| {
                 let c = &contenders[k];
                 (c.priority, std::cmp::Reverse(c.order))
@@ -151,8 +154,11 @@ fn together<'a>(wanting: impl Iterator<Item = &'a Contender<'a>> + Clone) -> Sha
 mod tests {
     use super::*;
 
-    /// Behaviours over two joints: (joints, priority, weight); the shares in both after each round.
-    fn check(kind: Arbitration, rounds: &[(&[usize], [&[(usize, f64)]; 2])]) {
+    /// Who contends, and the shares in both joints then.
+    type Round<'a> = (&'a [usize], [&'a [(usize, f64)]; 2]);
+
+    /// Rounds of behaviours over two joints.
+    fn check(kind: Arbitration, rounds: &[Round]) {
         let all = [
             ([true, true], 0, 1.0),
             ([true, false], 0, 3.0),

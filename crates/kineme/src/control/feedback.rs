@@ -75,7 +75,8 @@ impl Feedback {
                 )));
             }
         }
-        if !(0.0..1.0).contains(&self.share) || !(self.slowest > 0.0 && self.slowest <= 1.0) {
+        let slows = self.slowest > 0.0 && self.slowest <= 1.0;
+        if !(slows && (0.0..1.0).contains(&self.share)) {
             return Err(Error::invalid(format!(
                 "feedback takes a share in [0, 1) and slows to a share in (0, 1], found {} and {}",
                 self.share, self.slowest
