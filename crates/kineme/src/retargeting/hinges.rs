@@ -14,7 +14,7 @@ const STAYING: f64 = 0.03;
 const CHOOSING: f64 = 1e-4;
 /// Gauss-Newton steps at most, and the step (radians) that is no step any more.
 const STEPS: usize = 40;
-const STILL: f64 = 1e-12;
+const STILL: f64 = 1e-10;
 /// Halvings of a step that does not come nearer.
 const HALVINGS: usize = 8;
 /// Angles of a range from which the first search starts, as shares of it.
@@ -34,12 +34,31 @@ pub struct Hinges {
     scratch: Scratch,
 }
 
-/// Working space of a search: what it tries, and the hinges' columns.
-#[derive(Debug, Clone, Default)]
+/// Working space of a search, one entry a hinge.
+#[derive(Debug, Clone)]
 struct Scratch {
-    tried: Vec<f64>,
+    /// Angles from which the search started, and the ones that it looks at next.
+    first: Vec<f64>,
+    next: Vec<f64>,
+    step: Vec<f64>,
+    /// How the part turns with the hinge, in its own frame.
     columns: Vec<Vector3<f64>>,
+    /// Whether the hinge may move: in this search, and in this step.
+    loose: Vec<bool>,
     free: Vec<bool>,
+}
+
+impl Scratch {
+    fn of(count: usize) -> Self {
+        Self {
+            first: vec![0.0; count],
+            next: vec![0.0; count],
+            step: vec![0.0; count],
+            columns: vec![Vector3::zeros(); count],
+            loose: vec![true; count],
+            free: vec![true; count],
+        }
+    }
 }
 
 /// Where a search starts and what binds it.
@@ -63,7 +82,7 @@ impl Hinges {
             at: Vec::new(),
             angles: Vec::new(),
             missed: UnitQuaternion::identity(),
-            scratch: Scratch::default(),
+            scratch: Scratch::of(0),
         };
         for &j in joints {
             if let JointKind::Hinge { axis, range } = body.joints()[j].kind {
@@ -74,11 +93,7 @@ impl Hinges {
         }
         let count = hinges.axes.len();
         hinges.angles = vec![0.0; count];
-        hinges.scratch = Scratch {
-            tried: vec![0.0; count],
-            columns: vec![Vector3::zeros(); count],
-            free: vec![true; count],
-        };
+        hinges.scratch = Scratch::of(count);
         hinges
     }
 
@@ -92,14 +107,14 @@ impl Hinges {
                 for (angle, range) in self.angles.iter_mut().zip(&self.ranges) {
                     *angle = angle.max(range.low).min(range.high);
                 }
-                self.scratch.free.fill(true);
+                self.scratch.loose.fill(true);
                 self.descend(goal, STAYING, true);
             }
             Start::Beside(centre) => {
                 self.take(centre);
                 let hinges = self.angles.iter().zip(&self.ranges);
-                for (free, (angle, range)) in self.scratch.free.iter_mut().zip(hinges) {
-                    *free = range.low < *angle && *angle < range.high;
+                for (loose, (angle, range)) in self.scratch.loose.iter_mut().zip(hinges) {
+                    *loose = range.low < *angle && *angle < range.high;
                 }
                 let goal = goal * self.missed.inverse();
                 self.descend(&goal, STAYING, false);
@@ -136,7 +151,7 @@ impl Hinges {
                 };
                 digits /= STARTS.len();
             }
-            self.scratch.free.fill(true);
+            self.scratch.loose.fill(true);
             self.descend(goal, CHOOSING, true);
             let off = log(&(rotation(&self.axes, &self.angles).inverse() * goal));
             let far: f64 = self.angles.iter().map(|a| a * a).sum();
@@ -149,41 +164,39 @@ impl Hinges {
         self.angles = best.1;
     }
 
-    /// Gauss-Newton on `|log(R' goal)|^2 + staying^2 |angles - first|^2` from the present angles, over the free hinges;
+    /// Gauss-Newton on `|log(R' goal)|^2 + staying^2 |angles - first|^2` from the present angles, over the loose hinges;
     /// where `bound`, within the ranges, and a hinge that leans on its stop is left out of the step.
     fn descend(&mut self, goal: &UnitQuaternion<f64>, staying: f64, bound: bool) {
-        let first = self.angles.clone();
+        let (axes, ranges, angles) = (&self.axes, &self.ranges, &mut self.angles);
         let Scratch {
-            tried,
+            first,
+            next,
+            step,
             columns,
+            loose,
             free,
         } = &mut self.scratch;
-        let fixed = free.clone();
-        let cost = |angles: &[f64]| {
-            let off = log(&(rotation(&self.axes, angles).inverse() * goal));
-            let left: f64 = angles
-                .iter()
-                .zip(&first)
-                .map(|(a, b)| (a - b).powi(2))
-                .sum();
+        first.copy_from_slice(angles);
+        let cost = |angles: &[f64], first: &[f64]| {
+            let off = log(&(rotation(axes, angles).inverse() * goal));
+            let left: f64 = angles.iter().zip(first).map(|(a, b)| (a - b).powi(2)).sum();
             (off, off.norm_squared() + staying * staying * left)
         };
-        let (mut off, mut least) = cost(&self.angles);
+        let (mut off, mut least) = cost(angles, first);
         for _ in 0..STEPS {
             let mut after = UnitQuaternion::identity();
             for k in (0..columns.len()).rev() {
-                columns[k] = after.inverse() * self.axes[k].into_inner();
-                after = UnitQuaternion::from_axis_angle(&self.axes[k], self.angles[k]) * after;
+                columns[k] = after.inverse() * axes[k].into_inner();
+                after = UnitQuaternion::from_axis_angle(&axes[k], angles[k]) * after;
             }
-            free.copy_from_slice(&fixed);
+            free.copy_from_slice(loose);
             // Each round takes out the hinges that would go through their stops; there are no more rounds than hinges.
-            for _ in 0..=columns.len() {
-                step(&self.angles, &first, columns, free, &off, staying, tried);
+            loop {
+                newton(angles, first, columns, free, &off, staying, step);
                 let mut stopped = false;
                 for k in 0..free.len() {
-                    let range = &self.ranges[k];
-                    let out = (self.angles[k] >= range.high && tried[k] > 0.0)
-                        || (self.angles[k] <= range.low && tried[k] < 0.0);
+                    let out = (angles[k] >= ranges[k].high && step[k] > 0.0)
+                        || (angles[k] <= ranges[k].low && step[k] < 0.0);
                     if bound && free[k] && out {
                         free[k] = false;
                         stopped = true;
@@ -193,26 +206,22 @@ impl Hinges {
                     break;
                 }
             }
-            let length = tried.iter().fold(0f64, |m, t| m.max(t.abs()));
-            if length < STILL {
+            if step.iter().all(|s| s.abs() < STILL) {
                 return;
             }
             let mut share = 1.0;
             let mut nearer = false;
             for _ in 0..HALVINGS {
-                let next: Vec<f64> = (0..tried.len())
-                    .map(|k| {
-                        let angle = self.angles[k] + share * tried[k];
-                        match bound {
-                            true => angle.max(self.ranges[k].low).min(self.ranges[k].high),
-                            false => angle,
-                        }
-                    })
-                    .collect();
-                let (then, found) = cost(&next);
+                for k in 0..next.len() {
+                    next[k] = angles[k] + share * step[k];
+                    if bound {
+                        next[k] = next[k].max(ranges[k].low).min(ranges[k].high);
+                    }
+                }
+                let (then, found) = cost(next, first);
                 if found < least {
                     (off, least) = (then, found);
-                    self.angles.copy_from_slice(&next);
+                    angles.copy_from_slice(next);
                     nearer = true;
                     break;
                 }
@@ -236,7 +245,7 @@ fn rotation(axes: &[Unit<Vector3<f64>>], angles: &[f64]) -> UnitQuaternion<f64> 
 
 /// The Gauss-Newton step of the free hinges: the u - d that makes `|J u - (off + J d)|^2 + staying^2 |u|^2` least, d
 /// being how far the angles are from the first. Three equations, however many hinges.
-fn step(
+fn newton(
     angles: &[f64],
     first: &[f64],
     columns: &[Vector3<f64>],
