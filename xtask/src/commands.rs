@@ -1,5 +1,6 @@
 //! Commands that run other programs.
 
+use std::ffi::OsStr;
 use std::io::{ErrorKind, Write as _};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -175,13 +176,15 @@ fn seconds(time: Duration) -> String {
     format!("{:.1} s", time.as_secs_f64())
 }
 
-/// The line below which the tables of a document stand.
+/// The line below which the tables of a document stand that hold on every machine, and of one that are of a machine.
 const TABLES: &str = "<!-- tables: cargo xtask repro -->";
+const TIMES: &str = "<!-- tables: cargo xtask bench -->";
 /// Documents with tables, and the examples of `kineme-paper` that print them.
-const REPRODUCED: [(&str, &str); 3] = [
+const REPRODUCED: [(&str, &str); 4] = [
     ("docs/derivation.md", "derivation_table"),
     ("docs/model.md", "model_table"),
     ("docs/perception.md", "recognition_table"),
+    ("docs/control.md", "control_table"),
 ];
 
 /// Computes the tables of the documents again and puts them below their marks.
@@ -191,23 +194,57 @@ pub fn repro(root: &Path, corpus: Option<&Path>) -> Result<(), String> {
         (None, Some(data)) => Path::new(&data).join("mocap"),
         (None, None) => root.join("../shared/data/mocap"),
     };
+    setup::engine(root)?;
+    if let Err(message) = setup::g1(root) {
+        println!("without the robot: {message}");
+    }
     for (document, example) in REPRODUCED {
-        let page = root.join(document);
-        let text =
-            std::fs::read_to_string(&page).map_err(|e| format!("{}: {e}", page.display()))?;
-        let (above, _) = text
-            .split_once(TABLES)
-            .ok_or_else(|| format!("{}: no line `{TABLES}`", page.display()))?;
-        let tables = tables(root, example, &corpus)?;
-        std::fs::write(&page, format!("{above}{TABLES}\n{tables}"))
-            .map_err(|e| format!("{}: {e}", page.display()))?;
-        println!("{} is up to date", page.display());
+        let tables = tables(root, example, corpus.as_os_str())?;
+        replace(&root.join(document), TABLES, &tables)?;
     }
     Ok(())
 }
 
+/// Times ourselves on this machine and puts the table into its document.
+pub fn bench(root: &Path) -> Outcome {
+    setup::engine(root)?;
+    let tables = tables(root, "control_table", "--speed".as_ref())?;
+    replace(
+        &root.join("docs/benchmarks.md"),
+        TIMES,
+        &format!("\n{}\n\n{tables}", machine()),
+    )
+}
+
+/// The machine that is timed, where it says so.
+fn machine() -> String {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = info
+        .lines()
+        .find_map(|line| line.strip_prefix("model name"));
+    let model = model.map_or("", |m| m.trim_start_matches([' ', '\t', ':']));
+    let system = std::env::consts::OS;
+    format!(
+        "{cores} cores {model}, {system}, kineme {}.",
+        env!("CARGO_PKG_VERSION")
+    )
+}
+
+/// Puts tables below the mark of a document.
+fn replace(page: &Path, mark: &str, tables: &str) -> Outcome {
+    let failed = |e: std::io::Error| format!("{}: {e}", page.display());
+    let text = std::fs::read_to_string(page).map_err(failed)?;
+    let (above, _) = text
+        .split_once(mark)
+        .ok_or_else(|| format!("{}: no line `{mark}`", page.display()))?;
+    std::fs::write(page, format!("{above}{mark}\n{tables}")).map_err(failed)?;
+    println!("{} is up to date", page.display());
+    Ok(())
+}
+
 /// What an example of `kineme-paper` prints of a corpus.
-fn tables(root: &Path, example: &str, corpus: &Path) -> Result<String, String> {
+fn tables(root: &Path, example: &str, argument: &OsStr) -> Result<String, String> {
     let mut command = Command::new("cargo");
     command.current_dir(root).args([
         "run",
@@ -215,17 +252,19 @@ fn tables(root: &Path, example: &str, corpus: &Path) -> Result<String, String> {
         "--quiet",
         "--package",
         "kineme-paper",
+        "--features",
+        "sim",
         "--example",
         example,
         "--",
     ]);
     let output = command
-        .arg(corpus)
+        .arg(argument)
         .stderr(Stdio::inherit())
         .output()
         .map_err(|e| format!("cargo: {e}"))?;
     if !output.status.success() {
-        return Err(format!("no tables from {}", corpus.display()));
+        return Err(format!("no tables of {example}"));
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }

@@ -1,5 +1,8 @@
 //! The reproduction: what the paper shows, computed again on open data.
 
+pub mod choreographies;
+#[cfg(feature = "sim")]
+pub mod control;
 pub mod demo;
 pub mod derivation;
 pub mod figures;
@@ -14,4 +17,5 @@ pub mod out_and_back;
 pub mod postures;
 pub mod recognition;
 pub mod sets;
+pub mod sparring;
 pub mod table;

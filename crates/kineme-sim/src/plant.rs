@@ -277,7 +277,7 @@ impl Plant {
 
     fn bounded(&self, what: &str, values: &[f64], most: f64) -> Result<()> {
         // Not `any(> most)`: what is not a number is not within bounds either.
-        match values.iter().position(|v| !(v.abs() <= most)) {
+        match values.iter().position(|v| v.is_nan() || v.abs() > most) {
             None => Ok(()),
             Some(i) => Err(Error::unsupported(format!(
                 "the simulation diverged at {:.3} s: {what} {} of hinge {i}",

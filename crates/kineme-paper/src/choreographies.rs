@@ -1,0 +1,54 @@
+//! The vocabularies of `choreography/`, embedded.
+
+use std::sync::Arc;
+
+use kineme::primitive::{Modelling, Transitions};
+use kineme::{Skeleton, Vocabulary};
+
+use crate::sets::Result;
+
+/// The five vocabularies, by name.
+pub const SCRIPTS: [(&str, &str); 5] = [
+    ("boxing", include_str!("../../../choreography/boxing.toml")),
+    (
+        "punching",
+        include_str!("../../../choreography/punching.toml"),
+    ),
+    (
+        "vertical-waving",
+        include_str!("../../../choreography/vertical-waving.toml"),
+    ),
+    (
+        "horizontal-waving",
+        include_str!("../../../choreography/horizontal-waving.toml"),
+    ),
+    ("twist", include_str!("../../../choreography/twist.toml")),
+];
+
+/// One of them on a body.
+///
+/// # Errors
+/// Never for the embedded scripts on a built-in body.
+pub fn choreography(name: &str, text: &str, body: &Arc<Skeleton>) -> Result<Vocabulary> {
+    let file = format!("{name}.toml");
+    let script = kineme_formats::script::parse(&file, text.as_bytes())?;
+    Ok(script.vocabulary(body, &Modelling::default(), (&file, None))?)
+}
+
+/// The primitives of all five as one vocabulary.
+///
+/// # Errors
+/// Never for the embedded scripts on a built-in body.
+pub fn everything(body: &Arc<Skeleton>) -> Result<Vocabulary> {
+    let mut primitives = Vec::new();
+    for (name, text) in SCRIPTS {
+        primitives.extend_from_slice(choreography(name, text, body)?.primitives());
+    }
+    let transitions = Transitions::none(primitives.len());
+    Ok(Vocabulary::new(
+        Arc::clone(body),
+        primitives,
+        Vec::new(),
+        transitions,
+    )?)
+}
