@@ -10,6 +10,8 @@ use kineme::control::{
 };
 use kineme::primitive::{Modelling, Transitions};
 use kineme::{Primitive, Root, Skeleton, Vocabulary, adonis, ares};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 
 const SCRIPTS: [&str; 5] = [
     "boxing",
@@ -157,6 +159,61 @@ fn every_primitive_takes_over_from_every_other_without_a_jump() {
             most.1,
             most.2
         );
+    }
+}
+
+#[test]
+fn from_a_hundred_postures_every_primitive_reaches_its_flow_and_completes() {
+    let vocabulary = &*ADONIS;
+    let body = vocabulary.body();
+    let mut random = Pcg64::seed_from_u64(23);
+    for n in 0..100 {
+        let mut pose: Vec<f64> = (0..body.dof())
+            .map(|_| random.random_range(-2.5..2.5))
+            .collect();
+        body.limited(&mut pose);
+        let start = State::resting(pose, Root::ORIGIN);
+        for primitive in vocabulary.primitives() {
+            let asked = plan(60.0, 8.0, vec![Planned::new(primitive.name())]);
+            let course = primitive.at(&primitive.middle()).expect("the middle");
+            let made = Controller::new(vocabulary, &asked, &start, &ControlSettings::default());
+            let mut c = made.expect("a plan");
+            let mut on_it = 0;
+            let mut check = |pose: &[f64], phase: f64| {
+                let mut wanted = course.pose(phase);
+                body.limited(&mut wanted);
+                for (c, (x, goal)) in pose.iter().zip(&wanted).enumerate() {
+                    // Joints that it does not move stay where they were.
+                    let held = (x - start.pose[c]).abs() < 0.03;
+                    let off = (x - goal).abs();
+                    assert!(
+                        off < 1e-9 || held,
+                        "{n}: {} {phase} {off}",
+                        primitive.name()
+                    );
+                }
+                on_it += 1;
+            };
+            while !c.finished() {
+                let command = c.tick(None, None).clone();
+                let runs = c.active().first().is_some_and(|a| a.weight == 1.0);
+                // A course has run for 0.4 s when it has been joined.
+                if runs && course.secs_at(command.phase) > 0.41 {
+                    check(&command.pose, command.phase);
+                }
+            }
+            check(&c.command().pose, 1.0);
+            assert!(
+                c.ran().len() == 1 && c.ran()[0].completed,
+                "{n}: {}",
+                primitive.name()
+            );
+            assert!(
+                on_it > 1 || course.duration_secs() < 0.45,
+                "{n}: {}",
+                primitive.name()
+            );
+        }
     }
 }
 

@@ -13,7 +13,7 @@ use super::synthesizer::Synthesizer;
 use crate::error::Result;
 use crate::primitive::{Course, Primitive};
 
-/// Nobody waits longer at the start of a movement than a movement may be entered late.
+/// The latest phase at which an interrupted movement is gone on with.
 const LATEST: f64 = 0.9;
 /// Where a behaviour that is told to begin again while it runs joins its movement at the latest.
 const AGAIN: f64 = 0.5;
