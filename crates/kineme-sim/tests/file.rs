@@ -176,8 +176,8 @@ fn what_a_file_does_not_have_is_refused() {
 }
 
 fn g1() -> Option<RobotModel> {
-    let place: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../.mujoco/robots/unitree_g1/g1.xml");
+    let place: PathBuf =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.mujoco/robots/unitree_g1/g1.xml");
     if !place.is_file() {
         eprintln!("SKIPPED: no Unitree G1; `cargo xtask setup --robots` fetches it");
         return None;
@@ -195,7 +195,9 @@ fn the_g1_follows_a_wave_and_keeps_its_limits() {
     let mut made = SimulatedRobot::from_mjcf(&robot, &SimSettings::default()).expect("a robot");
     let mut transfer = Transfer::between(&adonis, &body).expect("parts in common");
     let shoulder = adonis.coordinates(adonis.joint("right_shoulder").expect("a shoulder"));
-    let elbow = adonis.coordinates(adonis.joint("right_elbow").expect("an elbow")).start;
+    let elbow = adonis
+        .coordinates(adonis.joint("right_elbow").expect("an elbow"))
+        .start;
     let waist = adonis.coordinates(adonis.joint("waist").expect("a waist"));
     let tau = std::f64::consts::TAU;
     // A raised arm waves and the trunk turns, once a second.
@@ -232,12 +234,19 @@ fn the_g1_follows_a_wave_and_keeps_its_limits() {
             if let JointKind::Hinge { range, .. } = &body.joints()[j].kind {
                 let angle = made.sensed().pose[body.coordinates(j).start];
                 let inside = range.low - 0.01..range.high + 0.01;
-                assert!(inside.contains(&angle), "{}: {angle}", body.joints()[j].name);
+                assert!(
+                    inside.contains(&angle),
+                    "{}: {angle}",
+                    body.joints()[j].name
+                );
             }
         }
     }
     let rms = (sum / f64::from(n)).sqrt();
-    println!("G1: rms {rms:.5} rad, worst {worst:.5}, saturated {:?}", made.effort());
+    println!(
+        "G1: rms {rms:.5} rad, worst {worst:.5}, saturated {:?}",
+        made.effort()
+    );
     assert!(rms < 0.01, "{rms} rad");
     assert!(worst < 0.1, "{worst} rad");
 }
@@ -262,8 +271,16 @@ fn the_g1_stands_where_its_body_does() {
             continue;
         };
         let kind = mujoco_rs::prelude::MjtObjBase::mjOBJ_JOINT;
-        let hinge = engine.model().name_to_id(kind, &robot.hinges[c]).expect("a hinge");
+        let hinge = engine
+            .model()
+            .name_to_id(kind, &robot.hinges[c])
+            .expect("a hinge");
         let place = Vector3::from(engine.data().xanchor()[hinge]) - base;
-        assert!((place - frame.position).norm() < 1e-6, "{}: {place:?} {:?}", robot.hinges[c], frame.position);
+        assert!(
+            (place - frame.position).norm() < 1e-6,
+            "{}: {place:?} {:?}",
+            robot.hinges[c],
+            frame.position
+        );
     }
 }
