@@ -8,7 +8,7 @@ use kineme::skeleton::JointKind;
 use kineme::{Root, Skeleton};
 use kineme_sim::{Hinges, Servo, SimSettings, SimulatedRobot, Triple, mjcf};
 use mujoco_rs::prelude::{MjData, MjModel};
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use rand::{RngExt as _, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -86,8 +86,21 @@ fn a_model_has_the_masses_and_the_freedom_of_its_body() {
         );
         for joint in body.joints() {
             let id = model.name_to_id(mujoco_rs::prelude::MjtObjBase::mjOBJ_BODY, &joint.name);
-            let mass = model.body_mass()[id.expect("a body of that name")];
+            let id = id.expect("a body of that name");
+            let mass = model.body_mass()[id];
             assert!((mass - joint.link.mass_kg).abs() < 1e-12, "{}", joint.name);
+            let center = Vector3::from(model.body_ipos()[id]);
+            assert!((center - joint.link.center).norm() < 1e-12);
+            let [w, x, y, z] = model.body_iquat()[id];
+            let frame = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+            let turned = frame.to_rotation_matrix();
+            let principal = Matrix3::from_diagonal(&Vector3::from(model.body_inertia()[id]));
+            let inertia = turned.matrix() * principal * turned.matrix().transpose();
+            assert!(
+                (inertia - joint.link.inertia).norm() < 1e-9,
+                "{}",
+                joint.name
+            );
         }
     }
 }

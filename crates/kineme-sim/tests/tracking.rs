@@ -85,26 +85,16 @@ fn hinges_follow_a_sinus_as_near_as_their_law_allows() {
             "adonis feedforward",
             adonis(),
             Servo::FeedforwardFeedback,
-            0.0006,
+            1e-5,
         ),
         (
             "adonis computed torque",
             adonis(),
             Servo::ComputedTorque,
-            0.0006,
+            1e-5,
         ),
-        (
-            "ares feedforward",
-            ares(),
-            Servo::FeedforwardFeedback,
-            0.002,
-        ),
-        (
-            "ares computed torque",
-            ares(),
-            Servo::ComputedTorque,
-            0.0006,
-        ),
+        ("ares feedforward", ares(), Servo::FeedforwardFeedback, 1e-4),
+        ("ares computed torque", ares(), Servo::ComputedTorque, 1e-5),
     ];
     for (name, body, servo, most) in cases {
         let rms = swinging(body, servo, 1.5);
