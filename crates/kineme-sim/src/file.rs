@@ -33,6 +33,13 @@ pub struct RobotFile {
 /// When the file cannot be read or compiled, or has no such base.
 pub(crate) fn load(robot: &RobotFile, settings: &SimSettings) -> Result<MjModel> {
     let dof = robot.skeleton.dof();
+    let mut kinds = robot.skeleton.joints().iter();
+    if let Some(ball) = kinds.find(|j| j.kind.dof() > 1) {
+        return Err(Error::invalid(format!(
+            "a robot of a file is made of hinges, but `{}` is a ball",
+            ball.name
+        )));
+    }
     if robot.hinges.len() != dof || robot.offsets.len() != dof {
         return Err(Error::invalid(format!(
             "a robot of {dof} coordinates has as many hinges and offsets, found {} and {}",
