@@ -33,6 +33,13 @@ pub struct RobotFile {
 /// When the file cannot be read or compiled, or has no such base.
 pub(crate) fn load(robot: &RobotFile, settings: &SimSettings) -> Result<MjModel> {
     let dof = robot.skeleton.dof();
+    let mut kinds = robot.skeleton.joints().iter();
+    if let Some(ball) = kinds.find(|j| j.kind.dof() > 1) {
+        return Err(Error::invalid(format!(
+            "a robot of a file is made of hinges, but `{}` is a ball",
+            ball.name
+        )));
+    }
     if robot.hinges.len() != dof || robot.offsets.len() != dof {
         return Err(Error::invalid(format!(
             "a robot of {dof} coordinates has as many hinges and offsets, found {} and {}",
@@ -87,33 +94,26 @@ pub(crate) fn load(robot: &RobotFile, settings: &SimSettings) -> Result<MjModel>
     spec.compile().map_err(engine)
 }
 
-/// The torque that the file allows each joint at most: of the joint itself, else of its drive.
+/// The torque (N m) that the file allows each joint at most: what it says of the joint, else of the force of its drive,
+/// else of a plain motor's control.
 fn strengths(spec: &MjSpec) -> Vec<(String, f64)> {
+    // A range that is not given is empty.
+    let most = |range: &[f64; 2]| (range[0] < range[1]).then(|| range[0].abs().min(range[1].abs()));
     let mut strengths = Vec::new();
     for joint in spec.joint_iter() {
-        let range = joint.actfrcrange();
-        if joint.actfrclimited() != MjtLimited::mjLIMITED_FALSE && range[0] < range[1] {
-            strengths.push((joint.name().to_string(), range[1].abs().min(range[0].abs())));
+        let limited = joint.actfrclimited() != MjtLimited::mjLIMITED_FALSE;
+        if let Some(most) = most(joint.actfrcrange()).filter(|_| limited) {
+            strengths.push((joint.name().to_string(), most));
         }
     }
     for drive in spec.actuator_iter() {
-        let (name, gear) = (drive.target(), drive.gear()[0].abs());
-        let known = strengths.iter().any(|(joint, _)| joint == name);
-        let range = if drive.forcerange()[0] < drive.forcerange()[1] {
-            drive.forcerange()
-        } else {
-            drive.ctrlrange()
-        };
-        // A control is a torque only where the drive is a plain motor.
-        let torque = drive.biastype() == MjtBias::mjBIAS_NONE || range == drive.forcerange();
-        if !known && torque && range[0] < range[1] {
-            let gain = if range == drive.forcerange() {
-                1.0
-            } else {
-                drive.gainprm()[0].abs()
-            };
-            let most = range[1].abs().min(range[0].abs()) * gear * gain;
-            strengths.push((name.to_string(), most));
+        let motor = drive.biastype() == MjtBias::mjBIAS_NONE;
+        let control = most(drive.ctrlrange()).filter(|_| motor);
+        let force = most(drive.forcerange());
+        let force = force.or(control.map(|most| most * drive.gainprm()[0].abs()));
+        if let Some(force) = force {
+            // The first that a joint has counts.
+            strengths.push((drive.target().to_string(), force * drive.gear()[0].abs()));
         }
     }
     strengths

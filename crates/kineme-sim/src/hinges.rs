@@ -1,8 +1,8 @@
 //! [`Hinges`]: between the coordinates of a body and the angles of the hinges that a simulation moves.
 
-use kineme::Skeleton;
 use kineme::math::rotation::{exp, log_near, right_jacobian};
 use kineme::skeleton::JointKind;
+use kineme::{Result, Skeleton};
 use nalgebra::Vector3;
 
 use crate::triple::Triple;
@@ -54,17 +54,17 @@ pub fn names(body: &Skeleton, joint: usize) -> Vec<String> {
 
 impl Hinges {
     /// The hinges of a body whose every ball is a [`Triple`]; `index` gives the place of a hinge of [`names`].
-    pub(crate) fn of<E>(
-        body: &Skeleton,
-        mut index: impl FnMut(&str) -> Result<usize, E>,
-    ) -> Result<Self, E> {
+    ///
+    /// # Errors
+    /// When `index` has one.
+    pub(crate) fn of(body: &Skeleton, index: impl Fn(&str) -> Result<usize>) -> Result<Self> {
         let mut joints = Vec::new();
         for j in 0..body.joints().len() {
             let at = body.coordinates(j);
             let hinges: Vec<usize> = names(body, j)
                 .iter()
                 .map(|name| index(name))
-                .collect::<Result<_, E>>()?;
+                .collect::<Result<_>>()?;
             match (&hinges[..], triple(body, j)) {
                 (&[one, two, three], Some(triple)) => joints.push(Joint::Ball {
                     first: at.start,

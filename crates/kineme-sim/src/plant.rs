@@ -17,7 +17,7 @@ const AT_LIMIT: f64 = 1.0 - 1e-9;
 
 /// What the hinges are to do during a step.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Target {
+pub(crate) struct Target {
     /// Angles at the beginning of the step, radians.
     pub angles: Vec<f64>,
     /// Velocities half a step before its beginning, radians a second: semi-implicit integration keeps velocities half
@@ -29,7 +29,7 @@ pub struct Target {
 
 impl Target {
     /// To be at rest at zero.
-    pub fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize) -> Self {
         Self {
             angles: vec![0.0; count],
             rates: vec![0.0; count],
@@ -40,7 +40,7 @@ impl Target {
 
 /// A force at a point of a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Push {
+pub(crate) struct Push {
     /// The engine's body.
     pub body: usize,
     /// Where on it, in its own frame, metres.
@@ -74,7 +74,7 @@ impl Plant {
     /// # Errors
     /// When a joint is neither hinge nor slider, when not every joint has one drive in the order of the joints, when
     /// nothing resists a joint.
-    pub fn new(
+    pub(crate) fn new(
         model: MjModel,
         servo: Servo,
         settings: &SimSettings,
@@ -172,7 +172,7 @@ impl Plant {
     }
 
     /// Puts the hinges at these angles and velocities.
-    pub fn reset(&mut self, angles: &[f64], rates: &[f64]) {
+    pub(crate) fn reset(&mut self, angles: &[f64], rates: &[f64]) {
         for data in [&mut self.data, &mut self.wanted] {
             data.reset();
             data.qpos_mut().copy_from_slice(angles);
@@ -186,7 +186,7 @@ impl Plant {
     ///
     /// # Errors
     /// When the simulation diverges.
-    pub fn step(&mut self, target: &Target, secs: f64, push: Option<&Push>) -> Result<()> {
+    pub(crate) fn step(&mut self, target: &Target, secs: f64, push: Option<&Push>) -> Result<()> {
         self.data.model_opt_mut().timestep = secs;
         self.data.fwd_position();
         self.data.fwd_velocity();
@@ -276,7 +276,6 @@ impl Plant {
     }
 
     fn bounded(&self, what: &str, values: &[f64], most: f64) -> Result<()> {
-        // Not `any(> most)`: what is not a number is not within bounds either.
         match values.iter().position(|v| v.is_nan() || v.abs() > most) {
             None => Ok(()),
             Some(i) => Err(Error::unsupported(format!(
@@ -306,6 +305,6 @@ fn inertias(model: &MjModel, postures: &[Vec<f64>]) -> Result<Vec<f64>> {
 }
 
 /// An error of the engine in ours.
-pub fn engine(error: impl std::fmt::Display) -> Error {
+pub(crate) fn engine(error: impl std::fmt::Display) -> Error {
     Error::invalid(format!("the physics engine: {error}"))
 }

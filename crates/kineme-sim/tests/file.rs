@@ -166,6 +166,9 @@ fn what_a_file_does_not_have_is_refused() {
     let mut robot = good.clone();
     robot.offsets.pop();
     assert!(refused(robot).contains("found 2 and 1"));
+    let mut robot = good.clone();
+    robot.skeleton = Arc::new(kineme::adonis().expect("adonis"));
+    assert!(refused(robot).contains("`waist` is a ball"));
     // Not welded, it floats.
     let mut robot = good.clone();
     robot.base = "arm".into();

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use kineme::control::Robot;
+use kineme::control::{Command, Robot};
 use kineme::math::rotation::exp;
 use kineme::skeleton::JointKind;
 use kineme::{Root, Skeleton};
-use kineme_sim::{Hinges, SimSettings, SimulatedRobot, Triple, mjcf};
+use kineme_sim::{Hinges, Servo, SimSettings, SimulatedRobot, Triple, mjcf};
 use mujoco_rs::prelude::{MjData, MjModel};
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use rand::{RngExt as _, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -21,6 +21,18 @@ fn bodies() -> [(Arc<Skeleton>, usize); 2] {
 
 fn robot(body: &Arc<Skeleton>) -> SimulatedRobot {
     SimulatedRobot::humanoid(body, &SimSettings::default()).expect("a robot")
+}
+
+fn resting(pose: &[f64]) -> Command {
+    Command {
+        pose: pose.to_vec(),
+        velocity: vec![0.0; pose.len()],
+        acceleration: vec![0.0; pose.len()],
+        root: Root::ORIGIN,
+        phase: 0.0,
+        finished: true,
+        limited: 0,
+    }
 }
 
 /// A posture within limits, the root turned by up to half a radian about each axis.
@@ -74,8 +86,21 @@ fn a_model_has_the_masses_and_the_freedom_of_its_body() {
         );
         for joint in body.joints() {
             let id = model.name_to_id(mujoco_rs::prelude::MjtObjBase::mjOBJ_BODY, &joint.name);
-            let mass = model.body_mass()[id.expect("a body of that name")];
+            let id = id.expect("a body of that name");
+            let mass = model.body_mass()[id];
             assert!((mass - joint.link.mass_kg).abs() < 1e-12, "{}", joint.name);
+            let center = Vector3::from(model.body_ipos()[id]);
+            assert!((center - joint.link.center).norm() < 1e-12);
+            let [w, x, y, z] = model.body_iquat()[id];
+            let frame = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+            let turned = frame.to_rotation_matrix();
+            let principal = Matrix3::from_diagonal(&Vector3::from(model.body_inertia()[id]));
+            let inertia = turned.matrix() * principal * turned.matrix().transpose();
+            assert!(
+                (inertia - joint.link.inertia).norm() < 1e-9,
+                "{}",
+                joint.name
+            );
         }
     }
 }
@@ -145,20 +170,29 @@ fn a_model_stands_where_its_body_does() {
     }
 }
 
+/// Half of every range about the neutral posture.
 #[test]
 fn usual_postures_are_far_from_the_lock() {
     for (body, _) in bodies() {
         for (j, joint) in body.joints().iter().enumerate() {
-            let (Some(triple), JointKind::Ball { reference, .. }) = (triple(&body, j), &joint.kind)
+            let (Some(triple), JointKind::Ball { reference, ranges }) =
+                (triple(&body, j), &joint.kind)
             else {
                 continue;
             };
             let [a, b, c] = triple.axes();
             assert!(a.dot(&b).abs() + b.dot(&c).abs() + a.dot(&c).abs() < 1e-12);
-            // The neutral posture and the middle of the ranges, of whatever joint.
-            let neutral = triple.lock(&reference.inverse());
-            assert!(neutral < 1.0, "{}: {neutral}", joint.name);
             assert!(triple.lock(&UnitQuaternion::identity()) < 1e-9);
+            let at = |k: usize, i: usize| {
+                let range = &ranges[k];
+                0.5 * (range.low + i as f64 / 6.0 * (range.high - range.low))
+            };
+            for i in 0..343 {
+                let angles = [at(0, i / 49), at(1, i / 7 % 7), at(2, i % 7)];
+                let turned = joint.axes.rotation(angles[0], angles[1], angles[2]);
+                let lock = triple.lock(&(reference.inverse() * turned)).to_degrees();
+                assert!(lock < 60.0, "{}: {lock} degrees at {angles:?}", joint.name);
+            }
         }
     }
 }
@@ -181,10 +215,10 @@ fn coordinates_come_back_from_the_hinges() {
             for c in 0..dof {
                 assert!((again[c] - pose[c]).abs() < 1e-9, "{} {c}", body.name());
             }
-            for j in 0..body.joints().len() {
+            for (j, triple) in triples.iter().enumerate() {
                 let at = body.coordinates(j);
                 // Near the lock rates are damped.
-                let locked = triples[j].as_ref().is_some_and(|triple| {
+                let locked = triple.as_ref().is_some_and(|triple| {
                     let v = Vector3::from_column_slice(&pose[at.clone()]);
                     triple.lock(&exp(&v)) > 1.51
                 });
@@ -250,4 +284,82 @@ fn angles_go_on_through_the_lock() {
         angles = next;
     }
     assert!((angles[1] - 2.0).abs() < 1e-6, "{angles:?}");
+}
+
+/// The engine's own step, which resets what diverges, and ours, which stops it before, do the same.
+#[test]
+fn a_step_is_the_engines_own() {
+    let (body, dof) = &bodies()[0];
+    for servo in [Servo::Pd, Servo::ComputedTorque] {
+        let settings = SimSettings {
+            servo: Some(servo),
+            ..SimSettings::default()
+        };
+        let mut robot = SimulatedRobot::humanoid(body, &settings).expect("a robot");
+        let mut random = Pcg64::seed_from_u64(5);
+        for _ in 0..5 {
+            let pose = posture(body, &mut random);
+            let velocity: Vec<f64> = (0..*dof).map(|_| random.random_range(-3.0..3.0)).collect();
+            robot.reset(&pose, &velocity).expect("reset");
+            let (angles, rates) = (
+                robot.plant().angles().to_vec(),
+                robot.plant().rates().to_vec(),
+            );
+            robot
+                .advance(&resting(&pose), settings.step_secs)
+                .expect("stable");
+            let mut data = MjData::new(robot.plant().model());
+            data.qpos_mut().copy_from_slice(&angles);
+            data.qvel_mut().copy_from_slice(&rates);
+            data.ctrl_mut().copy_from_slice(robot.plant().data().ctrl());
+            data.step();
+            assert_eq!(data.qpos(), robot.plant().angles());
+            assert_eq!(data.qvel(), robot.plant().rates());
+        }
+    }
+}
+
+/// Adonis without drives is a pendulum of 20 hinges, but for their armature: what it loses in height it gains in speed.
+#[test]
+fn a_body_that_nothing_drives_keeps_its_energy() {
+    let (body, dof) = &bodies()[0];
+    let settings = SimSettings {
+        servo: Some(Servo::ComputedTorque),
+        joint_limits: false,
+        ..SimSettings::default()
+    };
+    let robot = SimulatedRobot::humanoid(body, &settings).expect("a robot");
+    let model = robot.plant().model();
+    let mut data = MjData::new(model);
+    data.qpos_mut().copy_from_slice(robot.plant().angles());
+    let mut matrix = vec![0.0; dof * dof];
+    let mut energy = |data: &mut MjData<&MjModel>| {
+        data.forward();
+        data.full_m(&mut matrix).expect("room enough");
+        let v = data.qvel();
+        let pairs = (0..*dof).flat_map(|i| (0..*dof).map(move |j| (i, j)));
+        let kinetic: f64 = pairs
+            .map(|(i, j)| 0.5 * v[i] * matrix[i * dof + j] * v[j])
+            .sum();
+        let heights = data.xipos().iter().zip(model.body_mass());
+        (
+            kinetic,
+            heights
+                .map(|(place, mass)| 9.81 * mass * place[2])
+                .sum::<f64>(),
+        )
+    };
+    // Tipped forward, so that it falls.
+    data.qpos_mut()[0] += 0.3;
+    let (_, before) = energy(&mut data);
+    for _ in 0..500 {
+        data.step();
+    }
+    let (kinetic, after) = energy(&mut data);
+    let lost = (kinetic + after - before).abs();
+    println!("kinetic {kinetic:.3} J, fallen {:.3} J", before - after);
+    assert!(
+        kinetic > 10.0 && lost < 0.02 * kinetic,
+        "{lost} of {kinetic} J"
+    );
 }
