@@ -63,7 +63,7 @@ fn a_pushed_body_comes_back_and_completes() {
     let mut robot = simulated(&ADONIS);
     for phase in [0.2, 0.5, 0.8] {
         let came = pushed(&mut robot, &vocabulary, "jab", "right_wrist", phase).expect("a push");
-        assert!(came.away_rad > BACK_RAD, "{phase}: it was a push: {came:?}");
+        assert!(came.away_rad > 0.005, "{phase}: it was a push: {came:?}");
         assert!(came.left_rad <= BACK_RAD, "{phase}: {came:?}");
         assert!(came.completed, "{phase}");
     }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use kineme::{Error, Result, Skeleton};
+use kineme_formats::mjcf::RobotModel;
 use mujoco_rs::mujoco_c::{mjtDisableBit, mjtIntegrator, mjtTrn};
 use mujoco_rs::prelude::{MjModel, MjSpec, SpecElement, SpecObject};
 use mujoco_rs::wrappers::mj_editing::MjtLimited;
@@ -25,6 +26,18 @@ pub struct RobotFile {
     pub offsets: Vec<f64>,
     /// The body of the file that is welded to the world; its free joint, if it has one, is taken off.
     pub base: String,
+}
+
+impl From<RobotModel> for RobotFile {
+    fn from(model: RobotModel) -> Self {
+        Self {
+            hinges: model.hinges.iter().map(|h| h.joint.clone()).collect(),
+            offsets: model.hinges.iter().map(|h| h.neutral_rad).collect(),
+            base: model.root,
+            path: model.path,
+            skeleton: Arc::new(model.skeleton),
+        }
+    }
 }
 
 /// The model of a robot, welded at its base, with one drive a joint in the order of the joints.

@@ -45,13 +45,7 @@ const SMALL: &str = r#"<mujoco model="small">
 </mujoco>"#;
 
 fn file(model: &RobotModel) -> RobotFile {
-    RobotFile {
-        path: model.path.clone(),
-        skeleton: Arc::new(model.skeleton.clone()),
-        hinges: model.hinges.iter().map(|h| h.joint.clone()).collect(),
-        offsets: model.hinges.iter().map(|h| h.neutral_rad).collect(),
-        base: model.root.clone(),
-    }
+    model.clone().into()
 }
 
 /// The small robot, with the arm's two hinges alone for coordinates.

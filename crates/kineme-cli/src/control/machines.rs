@@ -39,7 +39,7 @@ fn kinematic(body: Body) -> KinematicRobot {
 #[cfg(feature = "sim")]
 fn simulated(args: &ControlArgs, body: Body) -> Result<Box<dyn Robot>, Failure> {
     use crate::args::ServoName;
-    use kineme_sim::{RobotFile, Servo, SimSettings, SimulatedRobot};
+    use kineme_sim::{Servo, SimSettings, SimulatedRobot};
     let settings = SimSettings {
         servo: args.servo.map(|servo| match servo {
             ServoName::Pd => Servo::Pd,
@@ -50,16 +50,7 @@ fn simulated(args: &ControlArgs, body: Body) -> Result<Box<dyn Robot>, Failure> 
     };
     let robot = match body {
         Body::BuiltIn(body) => SimulatedRobot::humanoid(&body, &settings)?,
-        Body::File(model) => {
-            let file = RobotFile {
-                hinges: model.hinges.iter().map(|h| h.joint.clone()).collect(),
-                offsets: model.hinges.iter().map(|h| h.neutral_rad).collect(),
-                base: model.root,
-                path: model.path,
-                skeleton: Arc::new(model.skeleton),
-            };
-            SimulatedRobot::from_mjcf(&file, &settings)?
-        }
+        Body::File(model) => SimulatedRobot::from_mjcf(&(*model).into(), &settings)?,
     };
     Ok(Box::new(robot))
 }

@@ -23,6 +23,9 @@ pub const BACK_SECS: f64 = 0.5;
 /// Seconds given to a movement beyond its own.
 const PATIENCE_SECS: f64 = 4.0;
 
+/// A joint whose coordinates change by less is not moved by a primitive, radians.
+const MOVES_RAD: f64 = 0.02;
+
 /// A plan of one primitive on all that it moves.
 fn alone(primitive: &str, seconds: f64) -> Plan {
     Plan {
@@ -138,14 +141,13 @@ pub fn begun(
         robot.advance(&command, 1.0 / RATE_HZ)?;
     }
     let completed = controller.ran().iter().any(|ran| ran.completed);
-    let end = course.pose(1.0);
-    let start = course.pose(0.0);
     let body = vocabulary.body();
-    let moved = (0..body.joints().len()).filter(|&j| {
-        let at = body.coordinates(j);
-        at.clone()
-            .any(|c| end[c] != start[c] || course.pose(0.5)[c] != start[c])
-    });
+    let [start, early, late, end] = [0.0, 0.3, 0.6, 1.0].map(|phase| course.pose(phase));
+    let moves = |c: usize| {
+        let from = |pose: &Vec<f64>| (pose[c] - start[c]).abs() > MOVES_RAD;
+        [&early, &late, &end].into_iter().any(from)
+    };
+    let moved = (0..body.joints().len()).filter(|&j| body.coordinates(j).any(moves));
     let done = &robot.sensed().pose;
     let off = moved.map(|j| {
         let at = body.coordinates(j);

@@ -1,14 +1,13 @@
 //! A real robot's model that does what the vocabularies do.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use kineme::control::{Arbitration, ControlSettings, Controller, Plan, Planned, Robot};
 use kineme::interaction::{Performance, Session, SessionSettings, standing};
 use kineme::skeleton::JointKind;
 use kineme::{Motion, Vocabulary};
-use kineme_formats::mjcf::{self, RobotModel};
-use kineme_sim::{RobotFile, SimSettings, SimulatedRobot};
+use kineme_formats::mjcf;
+use kineme_sim::{SimSettings, SimulatedRobot};
 
 use super::tracking::RATE_HZ;
 use crate::sets::Result;
@@ -20,19 +19,9 @@ use crate::sets::Result;
 pub fn robot(path: &Path) -> Result<SimulatedRobot> {
     let model = mjcf::read(path, None)?;
     Ok(SimulatedRobot::from_mjcf(
-        &file(model),
+        &model.into(),
         &SimSettings::default(),
     )?)
-}
-
-fn file(model: RobotModel) -> RobotFile {
-    RobotFile {
-        hinges: model.hinges.iter().map(|h| h.joint.clone()).collect(),
-        offsets: model.hinges.iter().map(|h| h.neutral_rad).collect(),
-        base: model.root,
-        path: model.path,
-        skeleton: Arc::new(model.skeleton),
-    }
 }
 
 /// One primitive after the other on a robot, at the middle of their parameters.

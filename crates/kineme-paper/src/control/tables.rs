@@ -92,7 +92,7 @@ fn swings(out: &mut String) -> Result<()> {
         let errors = swinging(body, servo, SWING_SECS)?;
         writeln!(
             out,
-            "| {} | {law} | {:.5} | {asked} |",
+            "| {} | {law} | {:.1e} | {asked} |",
             body.name(),
             errors.rms_rad()
         )?;
@@ -222,8 +222,8 @@ fn accelerations(vocabulary: &Vocabulary, behaviors: Vec<Planned>) -> Result<[f6
 fn pushes(out: &mut String) -> Result<()> {
     writeln!(
         out,
-        "\n### A push of 50 N for 0.1 s at the wrist, sideways, at ten phases\n\nFarthest: the joint turned away most, \
-         median of the phases. Left: the joint that is farthest from the flow half a second after the push, median and \
+        "\n### A push of 50 N for 0.1 s at the wrist, sideways, at ten phases\n\nServos of 8 Hz are stiff: \
+         the joint turned away most, median of the phases, is *farthest*. Left: the joint that is farthest from the flow half a second after the push, median and \
          worst, degrees (asked: 3).\n\n| body | movement | farthest | left, median | left, worst | within {:.0} | completed \
          |\n| --- | --- | --- | --- | --- | --- | --- |",
         BACK_RAD.to_degrees()

@@ -131,8 +131,9 @@ mod tests {
     fn what_lasts_is_noticed_and_what_flickers_is_not() {
         let (a, b, no) = ([0.9, 0.0], [0.0, 0.9], [0.1, 0.1]);
         let weak = [0.4, 0.1];
-        // (readings at 10 a second, what is noticed)
-        let cases: [(&[[f64; 2]], &[Option<usize>]); 5] = [
+        type Case<'a> = (&'a [[f64; 2]], &'a [Option<usize>]);
+        // Readings at 10 a second, and what is noticed.
+        let cases: [Case; 5] = [
             (&[a, no, a, no, b, a], &[None; 6]),
             (&[a, a, a], &[None, Some(0), Some(0)]),
             // Held by the lower threshold; let go after a while below it.
