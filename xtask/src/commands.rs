@@ -5,10 +5,19 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::tidy;
+use crate::{setup, tidy};
 
 /// Result of a command: the message of a failure is all that a caller prints.
 pub type Outcome = Result<(), String>;
+
+/// The whole workspace with physics.
+const WITH_ENGINE: &[&str] = &[
+    "--workspace",
+    "--features",
+    "kineme-cli/sim,kineme-paper/sim",
+];
+/// What can be built where the engine could not be fetched.
+const WITHOUT_ENGINE: &[&str] = &["--workspace", "--exclude", "kineme-sim"];
 
 /// Runs everything that CI asks and prints each step with its time; goes on after a failure, so that one run tells all.
 pub fn test(root: &Path, quick: bool) -> Outcome {
@@ -26,33 +35,34 @@ pub fn test(root: &Path, quick: bool) -> Outcome {
         let word = if outcome.is_ok() { "ok" } else { "FAILED" };
         println!("== {name}: {word}, {}", seconds(begun.elapsed()));
         count += 1;
+        outcome.is_ok()
     };
+    let engine = step("setup", &|| {
+        setup::engine(root)?;
+        // Tests of the robot say that they skip: no fault of the code's.
+        if let Err(message) = setup::g1(root) {
+            println!("without the robot: {message}");
+        }
+        Ok(())
+    });
+    let scope = if engine { WITH_ENGINE } else { WITHOUT_ENGINE };
+    let all = |command: &[&'static str], rest: &[&'static str]| [command, scope, rest].concat();
     step("format", &|| cargo(root, &["fmt", "--all", "--check"], &[]));
     step("tidy", &|| tidy::run(root));
     step("clippy", &|| {
-        let lints = [
-            "clippy",
-            "--workspace",
-            "--all-targets",
-            "--",
-            "-D",
-            "warnings",
-        ];
-        cargo(root, &lints, &[])
+        let rest = ["--all-targets", "--", "-D", "warnings"];
+        cargo(root, &all(&["clippy"], &rest), &[])
     });
     if quick {
         step("tests", &|| {
-            cargo(
-                root,
-                &["test", "--workspace", "--lib", "--bins", "--tests"],
-                &[],
-            )
+            let rest = ["--lib", "--bins", "--tests"];
+            cargo(root, &all(&["test"], &rest), &[])
         });
     } else {
-        step("tests", &|| cargo(root, &["test", "--workspace"], &[]));
+        step("tests", &|| cargo(root, &all(&["test"], &[]), &[]));
         step("documentation", &|| {
             let denied = [("RUSTDOCFLAGS", "-D warnings")];
-            cargo(root, &["doc", "--workspace", "--no-deps", "--lib"], &denied)
+            cargo(root, &all(&["doc"], &["--no-deps", "--lib"]), &denied)
         });
     }
     let took = seconds(begun.elapsed());
@@ -67,9 +77,14 @@ pub fn test(root: &Path, quick: bool) -> Outcome {
     }
 }
 
-/// `kineme demo` with these arguments, in release.
+/// `kineme demo` with these arguments, in release; without physics where the engine cannot be had.
 pub fn demo(root: &Path, arguments: &[&str]) -> Outcome {
-    let mut line = vec!["run", "--release", "--package", "kineme-cli", "--", "demo"];
+    let mut line = vec!["run", "--release", "--package", "kineme-cli"];
+    match setup::engine(root) {
+        Ok(()) => line.extend(["--features", "sim"]),
+        Err(message) => eprintln!("without physics: {message}"),
+    }
+    line.extend(["--", "demo"]);
     line.extend(arguments);
     cargo(root, &line, &[])
 }

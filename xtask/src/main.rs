@@ -1,6 +1,7 @@
 //! `cargo xtask`: the commands of those who work on the project.
 
 mod commands;
+mod setup;
 mod tidy;
 
 use std::path::{Path, PathBuf};
@@ -9,13 +10,15 @@ use std::process::ExitCode;
 const HELP: &str = "\
 cargo xtask COMMAND: what those who work on kineme run
 
-  test [--quick]             all that CI asks: formatting, tidy, clippy with warnings denied, tests
-                             and doc-tests, documentation with warnings denied.
+  test [--quick]             all that CI asks: setup, formatting, tidy, clippy with warnings denied,
+                             tests and doc-tests, documentation with warnings denied.
                              --quick leaves out doc-tests and documentation
+  setup [--robots]           fetch what physics needs, once: the engine into .mujoco/lib, and with --robots the humanoid
+                             Unitree G1 into .mujoco/robots; wants python3 with pip. `test` and `demo` do it themselves
   tidy                       only the rules that rustc and clippy do not know: floors between rooms
                              (the table in ARCHITECTURE.md), length of files, paths named in documents,
                              the code map, the CHANGELOG's heading, paths of somebody's machine
-  demo [-- ARGS]             kineme demo ARGS, in release
+  demo [-- ARGS]             kineme demo ARGS, in release, with physics
   repro [CORPUS]             the tables of docs/derivation.md, docs/model.md and docs/perception.md, computed again from
                              a corpus of labelled motion (default: KINEME_DATA/mocap, else ../shared/data/mocap)
   fuzz [TARGET] [SECONDS]    run one fuzz target, or each in turn, for so long (60 s); wants cargo-fuzz
@@ -33,6 +36,8 @@ fn main() -> ExitCode {
         }
         ["test"] => commands::test(&root(), false),
         ["test", "--quick"] => commands::test(&root(), true),
+        ["setup"] => setup::run(&root(), false),
+        ["setup", "--robots"] => setup::run(&root(), true),
         ["tidy"] => tidy::run(&root()),
         ["demo", "--", rest @ ..] | ["demo", rest @ ..] => commands::demo(&root(), rest),
         ["repro"] => commands::repro(&root(), None),
