@@ -24,6 +24,7 @@ mod show;
 mod source;
 mod synthesize;
 mod table;
+mod view;
 mod vocabularies;
 mod warnings;
 
@@ -77,6 +78,7 @@ fn run(cli: &Cli) -> Result<u8, Failure> {
         Command::Evaluate(args) => evaluate::run(args, &cli.global),
         Command::Classify(args) => classify::run(args, &cli.global),
         Command::Encode(args) => encode::run(args, &cli.global),
+        Command::View(args) => view::run(args, &cli.global),
         Command::Demo(args) => demo::run(args, &cli.global),
     }
 }

@@ -1,0 +1,27 @@
+//! What moves on a page, made from motions, recordings and vocabularies.
+//!
+//! The page's own types ([`kineme_report::scene`]) know points and times only; here is decided which points a body
+//! has, how finely a movement is shown, and what is said when something is left out.
+
+mod cards;
+mod flesh;
+mod flow;
+mod takes;
+
+pub use cards::{CardBudget, cards};
+pub use flesh::Shape;
+pub use takes::{Shown, actor, actor_of_recording, spans, take_of_derived, thinned};
+
+use kineme_report::scene::{Body, Scene};
+
+/// The index of a body in the scene, which gets it if it has it not.
+pub fn body_index(scene: &mut Scene, body: &Body) -> usize {
+    let known = scene.bodies.iter().position(|b| b == body);
+    known.unwrap_or_else(|| {
+        scene.bodies.push(body.clone());
+        scene.bodies.len() - 1
+    })
+}
+
+/// Bytes that a point takes on the page: three numbers of 16 bits in base64.
+const BYTES_PER_POINT: usize = 8;
