@@ -3,6 +3,7 @@ import { CardView } from "./card";
 import type { Scene } from "./data";
 import type { Player } from "./player";
 import { Stage } from "./stage";
+import { slow } from "./world";
 import "./viewer.css";
 
 interface Part {
@@ -39,12 +40,19 @@ function start(scene: Scene): void {
   });
 
   let before = performance.now();
+  let rested = 0;
   const frame = (now: number): void => {
-    // After a pause, such as in a hidden tab, time goes on where it stood.
-    const secs = Math.min((now - before) / 1000, 0.1);
-    before = now;
-    for (const part of parts) part.tick(secs);
     requestAnimationFrame(frame);
+    // Where drawing is slow the page must still answer: after a picture it rests as long as the picture took.
+    if (now < rested) return;
+    // After a pause, such as in a hidden tab, time goes on where it stood.
+    const secs = Math.min((now - before) / 1000, 0.25);
+    before = now;
+    const begun = performance.now();
+    for (const part of parts) part.tick(secs);
+    const took = performance.now() - begun;
+    rested = took > 12 ? begun + took + Math.min(took, 300) : 0;
+    if (took > 0.5) slow(took);
   };
   requestAnimationFrame(frame);
 }

@@ -27,6 +27,27 @@ export async function open(browser, url, options = {}) {
   page.on("request", (request) => {
     if (request.url() !== url) loads.push(request.url());
   });
-  await page.goto(url);
+  await page.goto(url, { timeout: 120000 });
   return { page, complaints, loads };
+}
+
+/** Waits until the page finds `there` true. The page's policy forbids what playwright's own waiting does. */
+export async function until(page, there, argument, ms = 60000) {
+  const end = Date.now() + ms;
+  for (;;) {
+    const found = await page.evaluate(there, argument);
+    if (found) return found;
+    if (Date.now() > end) throw new Error(`waited ${ms} ms in vain: ${there}`);
+    await page.waitForTimeout(50);
+  }
+}
+
+/** How many pictures a canvas has shown. */
+const drawn = (selector) => Number(document.querySelector(selector)?.dataset.drawn ?? 0);
+
+/** Does something and waits until the canvas shows another picture. */
+export async function redrawn(page, selector, act) {
+  const before = await page.evaluate(drawn, selector);
+  await act();
+  await until(page, ([selector, before]) => Number(document.querySelector(selector)?.dataset.drawn ?? 0) > before, [selector, before]);
 }
