@@ -104,12 +104,15 @@ export class Stage {
 
   private colour(actor: Actor): string {
     if (actor.colour !== null) return this.scene.palette[actor.colour % this.scene.palette.length];
-    return neutral();
+    // Who is alone wears the colour of what is happening.
+    const alone = this.playing.length === 1;
+    return (alone && this.timeline.colourNow()) || neutral();
   }
 
   /** Puts every body into its posture of the moment. */
   private pose(): void {
     const secs = this.player.secs;
+    this.timeline.now(secs);
     for (const { actor, figure, frames, width, shown } of this.playing) {
       const at = (secs - actor.start_secs) * actor.rate_hz;
       const here = at > -1 && at < actor.frames.rows;
@@ -125,7 +128,6 @@ export class Stage {
       this.focus.z = this.view.controls.target.z;
       if (Number.isFinite(this.focus.x)) this.view.follow(this.focus);
     }
-    this.timeline.now(secs);
     this.view.touch();
   }
 
@@ -151,7 +153,7 @@ export class Stage {
     const spread = Math.max(0, ...wide);
     this.view.reach = 1.7 + spread;
     at.z = 0.92;
-    this.view.look(at, 4.6 + 1.1 * spread);
+    this.view.look(at, 4.3 + 1.0 * spread);
   }
 
   private turned(event: KeyboardEvent): void {

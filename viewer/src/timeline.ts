@@ -15,6 +15,8 @@ export class Timeline {
   private readonly head = make("div", { class: "playhead" });
   private readonly rows: Row[] = [];
   private secs = 1;
+  private take: Take | null = null;
+  private coloured: string | null = null;
 
   constructor(private readonly palette: string[], private readonly put: (secs: number) => void) {
     this.element.addEventListener("pointerdown", (event) => {
@@ -28,6 +30,7 @@ export class Timeline {
   }
 
   show(take: Take): void {
+    this.take = take;
     this.secs = Math.max(take.secs, 1e-3);
     this.rows.length = 0;
     this.element.replaceChildren();
@@ -43,7 +46,15 @@ export class Timeline {
     if (take.tracks.length > 0) this.element.append(this.head);
   }
 
+  /** The colour of the span of the first such track at the moment, if it has one. */
+  colourNow(): string | null {
+    return this.coloured;
+  }
+
   now(secs: number): void {
+    const spans = this.take?.tracks.find((track) => track.kind === "spans")?.spans ?? [];
+    const span = spans.find((s) => s.colour !== null && s.start <= secs && secs < s.end);
+    this.coloured = span ? this.colour(span.colour) : null;
     this.head.style.left = `${(100 * secs) / this.secs}%`;
     for (const row of this.rows) row.now(secs);
   }

@@ -7,7 +7,7 @@ export const still = matchMedia("(prefers-reduced-motion: reduce)");
 
 /** The colour of what has no colour of its own. */
 export function neutral(): string {
-  return dark.matches ? "#b4bcc5" : "#8d98a4";
+  return dark.matches ? "#c2c9d1" : "#b4bdc7";
 }
 
 const FLOOR = `
@@ -32,8 +32,8 @@ class World {
   private readonly renderer: THREE.WebGLRenderer;
   private readonly grid: THREE.ShaderMaterial;
   private readonly shadow = new THREE.ShadowMaterial();
-  private readonly sun = new THREE.DirectionalLight(0xffffff, 2.1);
-  private readonly sky = new THREE.HemisphereLight(0xffffff, 0x8f8a85, 1.9);
+  private readonly sun = new THREE.DirectionalLight(0xfffaf2, 2.7);
+  private readonly sky = new THREE.HemisphereLight(0xffffff, 0xa39d97, 2.2);
   private width = 0;
   private height = 0;
 
@@ -65,8 +65,8 @@ class World {
     this.scene.add(this.floor, this.sky, this.sun, this.sun.target);
     const theme = (): void => {
       (this.grid.uniforms.ink.value as THREE.Color).set(dark.matches ? "#9fb0c2" : "#3c4a5a");
-      this.shadow.opacity = dark.matches ? 0.5 : 0.2;
-      this.sky.intensity = dark.matches ? 1.35 : 1.9;
+      this.shadow.opacity = dark.matches ? 0.55 : 0.26;
+      this.sky.intensity = dark.matches ? 1.5 : 2.2;
     };
     theme();
     dark.addEventListener("change", theme);

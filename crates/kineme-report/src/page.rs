@@ -61,13 +61,15 @@ impl Page {
              <title>{title}</title>\n<style>\n{STYLE}{more_style}</style>\n</head>\n<body>\n<main>\n\
              <header>\n<h1>{title}</h1>\n"
         );
-        for paragraph in &self.summary {
-            html.push_str(&format!("<p>{}</p>\n", escape(paragraph)));
-        }
+        // The first paragraph says what this is; then comes what moves, then what there is to say of it.
+        let (first, more) = self.summary.split_at(self.summary.len().min(1));
+        html.push_str(&paragraphs(first));
         html.push_str("</header>\n");
         if !self.scene.is_empty() {
-            html.push_str(&self.places_of_the_viewer(moving.is_some()));
+            html.push_str(&self.stage(moving.is_some()));
         }
+        html.push_str(&paragraphs(more));
+        html.push_str(&self.cards());
         for table in &self.tables {
             html.push_str(&table.html());
         }
@@ -94,8 +96,8 @@ impl Page {
         html
     }
 
-    /// Where the viewer puts what it makes; in it what is seen without.
-    fn places_of_the_viewer(&self, built: bool) -> String {
+    /// Where the viewer puts the stage, or why there is none.
+    fn stage(&self, built: bool) -> String {
         let mut html = String::new();
         if built {
             html.push_str(
@@ -113,10 +115,15 @@ impl Page {
                 "<section id=\"stage\" aria-label=\"Movement in three dimensions\"></section>\n",
             );
         }
+        html
+    }
+
+    /// The cards as they are seen without the viewer, which puts what moves into them.
+    fn cards(&self) -> String {
         if self.scene.primitives.is_empty() {
-            return html;
+            return String::new();
         }
-        html.push_str("<section id=\"primitives\" aria-label=\"Primitives\">\n<h2>Primitives</h2>\n<div class=\"cards\">\n");
+        let mut html = "<section id=\"primitives\" aria-label=\"Primitives\">\n<h2>Primitives</h2>\n<div class=\"cards\">\n".to_owned();
         for card in &self.scene.primitives {
             html.push_str(&self.card(card));
         }
@@ -154,6 +161,11 @@ impl Page {
         html.push_str("</dl>\n</article>\n");
         html
     }
+}
+
+fn paragraphs(texts: &[String]) -> String {
+    let paragraph = |text: &String| format!("<p>{}</p>\n", escape(text));
+    texts.iter().map(paragraph).collect()
 }
 
 /// The node of the grid nearest to where the sliders begin.

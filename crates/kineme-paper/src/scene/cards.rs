@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::flesh::Shape;
 use super::flow::flow;
-use super::{BYTES_PER_POINT, body_index};
+use super::{BYTES_PER_POINT, body_index, ground};
 
 /// How finely primitives are shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,6 +90,8 @@ fn card(primitive: &Primitive, shape: &Shape, budget: &CardBudget) -> kineme::Re
             primitive.registered(i, phase)
         });
     }
+    ground(&mut sampled.places);
+    ground(&mut exemplary.places);
     let flow = flow(&sampled.poses, &exemplary.poses);
     Ok(Card {
         name: primitive.name().into(),

@@ -23,5 +23,22 @@ pub fn body_index(scene: &mut Scene, body: &Body) -> usize {
     })
 }
 
+/// Thickness of a sole, metres: so far above the ground is the lowest point of who stands on it.
+const SOLE_M: f64 = 0.025;
+
+/// Lifts or lowers a movement so that it stands on the ground where it is lowest. Bodies whose root was never placed
+/// would be in the floor otherwise, and floors of studios are not all at zero.
+fn ground(rows: &mut [Vec<[f64; 3]>]) {
+    let heights = rows.iter().flatten().map(|p| p[2]);
+    let lowest = heights
+        .filter(|z| z.is_finite())
+        .fold(f64::INFINITY, f64::min);
+    if lowest.is_finite() {
+        for point in rows.iter_mut().flatten() {
+            point[2] += SOLE_M - lowest;
+        }
+    }
+}
+
 /// Bytes that a point takes on the page: three numbers of 16 bits in base64.
 const BYTES_PER_POINT: usize = 8;

@@ -6,7 +6,7 @@ use kineme::{Motion, Recording};
 use kineme_report::scene::{Actor, Places, Scene, Stretch, Take, Track};
 
 use super::flesh::Shape;
-use super::{BYTES_PER_POINT, body_index};
+use super::{BYTES_PER_POINT, body_index, ground};
 
 /// How much of motions a page shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,10 +54,11 @@ pub fn thinned(frames: usize, rate_hz: f64, most_hz: f64) -> (Vec<usize>, f64) {
 pub fn actor(scene: &mut Scene, name: &str, motion: &Motion, most_hz: f64) -> Actor {
     let shape = Shape::of(motion.skeleton());
     let (frames, rate_hz) = thinned(motion.frames(), motion.rate_hz(), most_hz);
-    let rows: Vec<_> = frames
+    let mut rows: Vec<_> = frames
         .iter()
         .map(|&f| shape.of_frames(&motion.frames_at(f)))
         .collect();
+    ground(&mut rows);
     Actor {
         name: name.into(),
         body: body_index(scene, &shape.body),
@@ -78,13 +79,14 @@ pub fn actor_of_recording(
     let shape = Shape::of_recording(recording, roles);
     let (frames, rate_hz) = thinned(recording.frames(), recording.rate_hz(), most_hz);
     let mut placed = Vec::new();
-    let rows: Vec<_> = frames
+    let mut rows: Vec<_> = frames
         .iter()
         .map(|&f| {
             recording.place(f, &mut placed);
             shape.places(&placed)
         })
         .collect();
+    ground(&mut rows);
     Actor {
         name: name.into(),
         body: body_index(scene, &shape.body),
