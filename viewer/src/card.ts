@@ -9,7 +9,9 @@ import { around, blend, corners, type Weighed } from "./rows";
 import { View } from "./world";
 
 /** How far exemplars and the blend stand from the middle, metres. */
-const APART = 0.62;
+const APART = 0.66;
+/** How solid an exemplar is: where all agree they add up. */
+const GHOST = 0.36;
 
 export class CardView {
   readonly player: Player;
@@ -36,14 +38,14 @@ export class CardView {
     this.clocks = floats(card.clock);
     this.clock = new Float32Array(card.phases);
     this.values = card.axes.map((axis) => axis.start);
-    this.view = new View(`${card.name}: on the left its exemplars, on the right their blend`, true);
+    this.view = new View(`${card.name}: on the left its exemplars, on the right their blend`, true, [1, -0.26, 0.2]);
     this.view.reach = 1.9;
     this.live = new Figure(body, FINE);
     this.live.colour(colour);
     this.live.group.position.set(0, APART, 0);
     this.bodies.add(this.live.group);
     for (let i = 0; i < card.exemplars.length; i++) {
-      const ghost = new Figure(body, COARSE, Math.max(0.16, 0.5 / Math.sqrt(card.exemplars.length)));
+      const ghost = new Figure(body, COARSE, GHOST);
       ghost.colour(colour);
       ghost.group.position.set(0, -APART, 0);
       this.ghosts.push(ghost);
@@ -73,7 +75,7 @@ export class CardView {
     const transport = make("div", { class: "transport" }, this.player.play, this.player.scrub, this.player.time);
     element.querySelector(".strip")?.replaceWith(port, transport, ...this.sliders());
     this.moved();
-    this.view.look(new THREE.Vector3(0, 0, 0.9), 5.6);
+    this.view.look(new THREE.Vector3(0, 0, 0.88), 5);
   }
 
   get visible(): boolean {

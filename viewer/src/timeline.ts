@@ -76,8 +76,7 @@ export class Timeline {
       let line = ends.findIndex((end) => end <= span.start + 1e-6);
       if (line < 0) line = ends.push(0) - 1;
       ends[line] = span.end;
-      const name = make("span", {}, span.name);
-      const part = make("div", { class: "span", title: told(span) }, name);
+      const part = make("div", { class: "span", title: told(span) });
       part.style.left = `${(100 * span.start) / this.secs}%`;
       part.style.width = `${(100 * (span.end - span.start)) / this.secs}%`;
       part.style.setProperty("--line", String(line));
@@ -88,6 +87,14 @@ export class Timeline {
     });
     lane.style.setProperty("--lines", String(Math.max(ends.length, 1)));
     lane.append(...parts);
+    // A name where there is room for it, else what tells it from the others, else nothing.
+    const prefix = commonPrefix(sorted.map((span) => span.name));
+    const fit = (): void => sorted.forEach((span, i) => {
+      const room = (lane.clientWidth * (span.end - span.start)) / this.secs - 6;
+      const short = span.name.startsWith(prefix) ? span.name.slice(prefix.length) : span.name;
+      parts[i].textContent = [span.name, short].find((name) => 6.3 * name.length <= room) ?? "";
+    });
+    new ResizeObserver(fit).observe(lane);
     this.rows.push({
       now: (secs) => {
         const names: string[] = [];
@@ -164,6 +171,15 @@ export class Timeline {
     lane.append(svg);
     return svg;
   }
+}
+
+/** What all names begin with, up to their last hyphen. */
+function commonPrefix(names: string[]): string {
+  const hyphened = names.filter((name) => name.includes("-"));
+  if (hyphened.length === 0) return "";
+  let prefix = hyphened[0].slice(0, hyphened[0].lastIndexOf("-") + 1);
+  while (!hyphened.every((name) => name.startsWith(prefix))) prefix = prefix.slice(0, prefix.slice(0, -1).lastIndexOf("-") + 1);
+  return prefix;
 }
 
 function told(span: Stretch): string {

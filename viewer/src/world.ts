@@ -131,10 +131,11 @@ export class View {
   visible = false;
   private stale = true;
   private drawn = 0;
-  private readonly home = new THREE.Vector3(1, -0.62, 0.24);
+  private readonly home: THREE.Vector3;
   private away = 5;
 
-  constructor(label: string, private readonly onFloor: boolean) {
+  constructor(label: string, private readonly onFloor: boolean, from: [number, number, number] = [1, -0.62, 0.24]) {
+    this.home = new THREE.Vector3(...from);
     this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", label);
     this.camera.up.set(0, 0, 1);

@@ -259,8 +259,7 @@ impl<'a> Builder<'a> {
             if point == before {
                 continue;
             }
-            let radius =
-                |s: f64| 0.105 - 0.02 * (1.0 - (2.0 * s - 0.8).abs()).max(0.0) - 0.03 * s.powi(4);
+            let radius = |s: f64| 0.104 - 0.024 * s - 0.018 * s.powi(8);
             let begun = (i - 1) as f64 / pieces as f64;
             self.bone([before, point], [radius(begun), radius(share)]);
             before = point;
@@ -270,14 +269,14 @@ impl<'a> Builder<'a> {
                 continue;
             };
             // The flank: it makes the trunk wider than deep, as trunks are.
-            let rib = self.spot(Spot::Between(arm, before, 0.42));
+            let rib = self.spot(Spot::Between(arm, before, 0.50));
             let waist = self.spot(Spot::Between(leg, before, 0.34));
-            let waist = self.spot(Spot::Between(waist, hips, 0.30));
-            let crest = self.spot(Spot::Between(leg, hips, 0.42));
-            self.bone([rib, waist], [0.075, 0.075]);
-            self.bone([waist, crest], [0.075, 0.088]);
-            self.bone([hips, leg], [0.100, 0.082]);
-            self.bone([before, arm], [0.062, 0.054]);
+            let waist = self.spot(Spot::Between(waist, hips, 0.38));
+            let crest = self.spot(Spot::Between(leg, hips, 0.45));
+            self.bone([rib, waist], [0.090, 0.080]);
+            self.bone([waist, crest], [0.080, 0.098]);
+            self.bone([hips, leg], [0.104, 0.090]);
+            self.bone([before, arm], [0.064, 0.056]);
         }
         self.neck_and_head(before, head);
     }
@@ -306,19 +305,19 @@ impl<'a> Builder<'a> {
             (LeftUpperArm, LeftLowerArm, LeftHand, LeftFingers),
             (RightUpperArm, RightLowerArm, RightHand, RightFingers),
         ] {
-            self.link(upper, lower, [0.052, 0.041]);
-            self.link(lower, hand, [0.041, 0.028]);
+            self.link(upper, lower, [0.055, 0.041]);
+            self.link(lower, hand, [0.041, 0.030]);
             self.tips
                 .extend(self.at_joint.get(&self.roles[&hand]).copied());
-            self.ending(hand, fingers, [[0.031, 0.030], [0.027, 0.014]]);
+            self.ending(hand, fingers, [[0.030, 0.031], [0.029, 0.014]]);
         }
         for (upper, lower, foot, toes) in [
             (LeftUpperLeg, LeftLowerLeg, LeftFoot, LeftToes),
             (RightUpperLeg, RightLowerLeg, RightFoot, RightToes),
         ] {
-            self.link(upper, lower, [0.086, 0.056]);
-            self.link(lower, foot, [0.056, 0.038]);
-            self.ending(foot, toes, [[0.040, 0.031], [0.030, 0.020]]);
+            self.link(upper, lower, [0.090, 0.056]);
+            self.link(lower, foot, [0.056, 0.039]);
+            self.ending(foot, toes, [[0.039, 0.031], [0.031, 0.021]]);
         }
     }
 

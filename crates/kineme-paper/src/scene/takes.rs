@@ -45,7 +45,8 @@ impl Shown {
 
 /// Which frames of a motion are shown, and how many of them a second: every n-th, so that none is made up.
 pub fn thinned(frames: usize, rate_hz: f64, most_hz: f64) -> (Vec<usize>, f64) {
-    let stride = (rate_hz / most_hz - 1e-6).ceil().max(1.0);
+    // Frame times of few digits make 30 frames a second 30.0003.
+    let stride = (rate_hz / most_hz - 0.01).ceil().max(1.0);
     let chosen = (0..frames).step_by(stride as usize).collect();
     (chosen, rate_hz / stride)
 }
