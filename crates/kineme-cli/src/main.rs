@@ -27,6 +27,7 @@ mod show;
 mod source;
 mod synthesize;
 mod table;
+mod view;
 mod vocabularies;
 mod warnings;
 
@@ -81,6 +82,7 @@ fn run(cli: &Cli) -> Result<u8, Failure> {
         Command::Classify(args) => classify::run(args, &cli.global),
         Command::Control(args) => control::run(args, &cli.global),
         Command::Encode(args) => encode::run(args, &cli.global),
+        Command::View(args) => view::run(args, &cli.global),
         Command::Demo(args) => demo::run(args, &cli.global),
     }
 }

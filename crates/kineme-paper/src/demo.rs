@@ -133,7 +133,22 @@ impl Demo {
             self.movements.ari
         ));
         let title = "The movements of a session, found";
-        Report::of(&self.derived, &self.motions, title, &paragraphs).write(folder, existing)
+        let report = Report::of(
+            &self.derived,
+            &self.motions,
+            &self.vocabulary,
+            title,
+            &paragraphs,
+        );
+        let refused = |e: kineme::Error| {
+            FormatError::new(
+                VOCABULARY,
+                Place::File,
+                e.to_string(),
+                "a vocabulary to show",
+            )
+        };
+        report.map_err(refused)?.write(folder, existing)
     }
 
     /// The names of the files that [`Self::write`] writes.

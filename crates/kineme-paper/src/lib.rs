@@ -16,6 +16,7 @@ pub mod models;
 pub mod out_and_back;
 pub mod postures;
 pub mod recognition;
+pub mod scene;
 pub mod sets;
 pub mod sparring;
 pub mod table;

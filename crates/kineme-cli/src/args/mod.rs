@@ -5,6 +5,7 @@ mod control;
 mod encode;
 mod evaluate;
 mod model;
+mod view;
 
 pub use classify::{ClassifierArgs, ClassifierName, ClassifyArgs};
 pub use control::{ControlArgs, ServoName};
@@ -14,6 +15,7 @@ pub use model::{
     ChoreographArgs, EditArgs, InterpolationName, LearnArgs, Merging, ModelArgs, Parameters,
     Renaming, ShowArgs, SynthesizeArgs, Target,
 };
+pub use view::ViewArgs;
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -36,6 +38,7 @@ Examples:
   kineme evaluate moves.kineme tests.csv          how well its movements are recognised
   kineme classify moves.kineme take.bvh           which of them a motion is, and when
   kineme encode moves.kineme take.bvh             which of them a motion is, by its hands
+  kineme view take.bvh                            a motion, or a vocabulary, in the browser
   kineme convert take.amc take.bvh                another format, nothing lost
 
 Exit codes: 0 done, 1 the work failed, 2 usage, 3 an input cannot be read.";
@@ -86,6 +89,7 @@ pub enum Command {
     Classify(Box<ClassifyArgs>),
     Encode(Box<EncodeArgs>),
     Control(Box<ControlArgs>),
+    View(Box<ViewArgs>),
     Demo(DemoArgs),
 }
 

@@ -3,6 +3,9 @@
 use crate::error::{Error, Result};
 use crate::primitive::Reading;
 
+/// Rounding of times that is no time.
+const ROUNDING_SECS: f64 = 1e-9;
+
 /// When a movement counts as noticed.
 ///
 /// A filter's answers of single moments change their mind; whoever answers with a movement of their own wants few false
@@ -96,12 +99,12 @@ impl Attending {
                 (None, true) => Some(secs),
                 (since, true) => since,
             };
-            if over.is_some_and(|since| secs - since >= asked.linger_secs) {
+            if over.is_some_and(|since| secs - since >= asked.linger_secs - ROUNDING_SECS) {
                 self.noticed = None;
             }
         }
         if let Some((k, since)) = self.candidate
-            && secs - since >= asked.sustain_secs
+            && secs - since >= asked.sustain_secs - ROUNDING_SECS
             && self.noticed.is_none_or(|(now, _)| now != k)
         {
             self.noticed = Some((k, None));
