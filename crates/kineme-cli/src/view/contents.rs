@@ -7,7 +7,7 @@ use kineme_report::scene::{Scene, Take};
 use kineme_report::{Page, Table};
 
 use crate::args::ViewArgs;
-use crate::bodies::built_in;
+use crate::bodies;
 use crate::describe::short;
 use crate::failure::Failure;
 use crate::source::{Source, print_warnings};
@@ -27,7 +27,7 @@ struct Taken {
 
 /// A page of motions; beside it the exit code.
 pub fn of_motions(args: &ViewArgs) -> Result<(Page, u8), Failure> {
-    let wanted = args.body.as_deref().map(body).transpose()?;
+    let wanted = args.body.as_deref().map(bodies::any).transpose()?;
     let source = Source::open(&args.inputs, &args.read)?;
     let entries: Vec<_> = source.inputs.entries.iter().collect();
     let read = source.each(&entries, "reading", |_, entry| {
