@@ -10,7 +10,8 @@ use kineme_report::scene::Scene;
 use kineme_report::{Figure, GroupPaths, Page, Row, Span};
 use rayon::prelude::*;
 
-use crate::scene::{CardBudget, Shape, Shown, cards, take_of_derived};
+use crate::scene::{CardBudget, Shape, Shown, cards, take_of_derived, takes_of_show};
+use crate::show::Show;
 
 /// The page among the files of a report.
 pub const PAGE: &str = "index.html";
@@ -24,7 +25,7 @@ pub struct Report {
 
 impl Report {
     /// What was derived from `motions` and the vocabulary made of it, moving and as figures, on a page with this title
-    /// and these paragraphs.
+    /// and these paragraphs; before it a show, where there is one.
     ///
     /// # Errors
     /// When a primitive refuses its own parameters.
@@ -32,11 +33,11 @@ impl Report {
         derived: &Derived,
         motions: &[Motion],
         vocabulary: &Vocabulary,
-        title: &str,
-        summary: &[String],
+        show: Option<&Show>,
+        (title, summary): (&str, &[String]),
     ) -> kineme::Result<Self> {
         let figures = figures(derived, motions);
-        let (scene, notes) = scene(derived, motions, vocabulary)?;
+        let (scene, notes) = scene(derived, motions, vocabulary, show)?;
         let page = Page {
             title: title.into(),
             summary: [summary, &notes].concat(),
@@ -81,8 +82,15 @@ fn scene(
     derived: &Derived,
     motions: &[Motion],
     vocabulary: &Vocabulary,
+    show: Option<&Show>,
 ) -> kineme::Result<(Scene, Vec<String>)> {
     let mut scene = Scene::default();
+    let mut budget = CardBudget::default();
+    if let Some(show) = show {
+        budget.bytes /= 2;
+        scene.takes = takes_of_show(&mut scene, show);
+        scene.primitives = cards(&mut scene, &show.movements, &budget)?.0;
+    }
     let points = Shape::of(vocabulary.body()).body.points;
     let sizes: Vec<(f64, usize)> = motions
         .iter()
@@ -93,8 +101,8 @@ fn scene(
         let take = take_of_derived(&mut scene, derived, motions, i, shown.rate_hz);
         scene.takes.push(take);
     }
-    let (cards, left_out) = cards(&mut scene, vocabulary, &CardBudget::default())?;
-    scene.primitives = cards;
+    let (found, left_out) = cards(&mut scene, vocabulary, &budget)?;
+    scene.primitives.extend(found);
     let mut notes = Vec::new();
     if shown.takes < motions.len() {
         notes.push(format!(

@@ -18,5 +18,6 @@ pub mod postures;
 pub mod recognition;
 pub mod scene;
 pub mod sets;
+pub mod show;
 pub mod sparring;
 pub mod table;
