@@ -38,7 +38,7 @@ export class CardView {
     this.clocks = floats(card.clock);
     this.clock = new Float32Array(card.phases);
     this.values = card.axes.map((axis) => axis.start);
-    this.view = new View(`${card.name}: on the left its exemplars, on the right their blend`, true, [1, -0.26, 0.2]);
+    this.view = new View(`${card.name}: on the left its exemplars, on the right their blend`, [1, -0.26, 0.2]);
     this.view.reach = 1.9;
     this.live = new Figure(body, FINE);
     this.live.colour(colour);
@@ -62,11 +62,12 @@ export class CardView {
       this.flow.group.visible = false;
       this.view.content.add(this.flow.group);
       const shares = card.flow.explained.map((e) => `${Math.round(100 * e)} %`);
-      const told = `Flowfield in three principal coordinates of posture (${shares.join(", ")} of the variance): exemplars bold`;
+      const told = `Flowfield in three principal coordinates of posture (${shares.join(", ")} of the variance), each on its own scale; exemplars bold`;
       tools.append(toggle("Show the flowfield", "Flow", false, (on) => {
         this.bodies.visible = !on;
         captions.replaceChildren(...(on ? [make("span", {}, told)] : [make("span", {}, this.counted()), make("span", {}, "f(p, \u03c4)")]));
         if (this.flow) this.flow.group.visible = on;
+        this.view.onFloor = !on;
         this.pose();
       }));
     }

@@ -3,8 +3,8 @@ import * as THREE from "three";
 import { floats, type Card, type Flow } from "./data";
 import { neutral } from "./world";
 
-/** Metres that the field's largest extent becomes. */
-const SIZE = 1.7;
+/** Metres that the field's extent along each coordinate becomes: the later ones would hardly be seen at the first's scale. */
+const SIZES = [2.6, 1.5, 1.3];
 /** The height of its middle. */
 const HEIGHT = 0.92;
 
@@ -12,7 +12,7 @@ export class FlowPicture {
   readonly group = new THREE.Group();
   readonly lattice: Float32Array;
   private readonly dot: THREE.Mesh;
-  private readonly scale: number;
+  private readonly scale = new THREE.Vector3();
   private readonly middle = new THREE.Vector3();
 
   constructor(card: Card, flow: Flow, colour: string) {
@@ -24,13 +24,15 @@ export class FlowPicture {
     }
     box.getCenter(this.middle);
     const extent = box.getSize(new THREE.Vector3());
-    this.scale = SIZE / Math.max(extent.x, extent.y, extent.z, 1e-6);
+    // A coordinate along which nothing differs stays flat.
+    const least = 1e-3 * Math.max(extent.x, extent.y, extent.z, 1e-9);
+    this.scale.fromArray(extent.toArray().map((e, i) => SIZES[i] / Math.max(e, least)));
     this.group.add(this.arrows(card, colour), ...this.axes());
     const bold = new THREE.MeshStandardMaterial({ color: colour, roughness: 0.6 });
     for (let e = 0; e < card.exemplars.length; e++) {
       const points = Array.from({ length: card.phases }, (_, k) => this.at(exemplars, e * card.phases + k));
       const curve = new THREE.CatmullRomCurve3(points);
-      this.group.add(new THREE.Mesh(new THREE.TubeGeometry(curve, 2 * card.phases, 0.011, 6), bold));
+      this.group.add(new THREE.Mesh(new THREE.TubeGeometry(curve, 2 * card.phases, 0.014, 6), bold));
     }
     this.dot = new THREE.Mesh(new THREE.SphereGeometry(0.045, 20, 14), new THREE.MeshStandardMaterial({ roughness: 0.4 }));
     this.group.add(this.dot);
@@ -43,7 +45,7 @@ export class FlowPicture {
   }
 
   private at(table: Float32Array, row: number): THREE.Vector3 {
-    const place = new THREE.Vector3().fromArray(table, 3 * row).sub(this.middle).multiplyScalar(this.scale);
+    const place = new THREE.Vector3().fromArray(table, 3 * row).sub(this.middle).multiply(this.scale);
     // The coordinate of most variance lies across, the second upright, the third in depth.
     return new THREE.Vector3(place.z, place.x, place.y + HEIGHT);
   }
@@ -57,7 +59,7 @@ export class FlowPicture {
       if (phase % 2 === 1 || phase === card.phases - 1) continue;
       places.push([this.at(this.lattice, row), this.at(this.lattice, row + 1)]);
     }
-    const cone = new THREE.ConeGeometry(0.014, 0.06, 6);
+    const cone = new THREE.ConeGeometry(0.02, 0.09, 6);
     const material = new THREE.MeshStandardMaterial({ color: colour, roughness: 0.8, transparent: true, opacity: 0.5 });
     const mesh = new THREE.InstancedMesh(cone, material, places.length);
     const up = new THREE.Vector3(0, 1, 0);
@@ -67,7 +69,7 @@ export class FlowPicture {
       const along = to.clone().sub(from);
       const length = along.length();
       turn.setFromUnitVectors(up, length > 0 ? along.divideScalar(length) : up);
-      const size = Math.min(Math.max(length / 0.08, 0.35), 1.8);
+      const size = Math.min(Math.max(length / 0.1, 0.4), 1.8);
       matrix.compose(from, turn, new THREE.Vector3(0.8, size, 0.8));
       mesh.setMatrixAt(i, matrix);
     });
@@ -76,13 +78,13 @@ export class FlowPicture {
   }
 
   private axes(): THREE.Object3D[] {
-    const corner = new THREE.Vector3(-SIZE / 2, -SIZE / 2, HEIGHT - SIZE / 2);
+    const corner = new THREE.Vector3(-SIZES[2] / 2, -SIZES[0] / 2, HEIGHT - SIZES[1] / 2);
     const ends = [[0, 1, 0], [0, 0, 1], [1, 0, 0]].map((d) => new THREE.Vector3(...(d as [number, number, number])));
     return ends.map((along, i) => {
-      const geometry = new THREE.CylinderGeometry(0.004, 0.004, SIZE * [1, 0.8, 0.6][i], 5);
+      const geometry = new THREE.CylinderGeometry(0.004, 0.004, SIZES[i], 5);
       const bar = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: "#8a929b" }));
       bar.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along);
-      bar.position.copy(corner).addScaledVector(along, (SIZE * [1, 0.8, 0.6][i]) / 2);
+      bar.position.copy(corner).addScaledVector(along, SIZES[i] / 2);
       return bar;
     });
   }

@@ -18,7 +18,7 @@ interface Playing {
 
 export class Stage {
   readonly player: Player;
-  private readonly view = new View("Bodies in motion; drag to turn, scroll to come nearer after a click", true);
+  private readonly view = new View("Bodies in motion; drag to turn, scroll to come nearer after a click");
   private readonly timeline: Timeline;
   private readonly legend = make("div", { class: "legend", role: "group", "aria-label": "Bodies" });
   private readonly note = make("p", { class: "note" });

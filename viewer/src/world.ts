@@ -129,12 +129,14 @@ export class View {
   /** Metres about the focus that matter. */
   reach = 1.6;
   visible = false;
+  /** Whether there is a floor to stand on. */
+  onFloor = true;
   private stale = true;
   private drawn = 0;
   private readonly home: THREE.Vector3;
   private away = 5;
 
-  constructor(label: string, private readonly onFloor: boolean, from: [number, number, number] = [1, -0.62, 0.24]) {
+  constructor(label: string, from: [number, number, number] = [1, -0.62, 0.24]) {
     this.home = new THREE.Vector3(...from);
     this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", label);

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::flesh::Shape;
 use super::flow::flow;
-use super::{BYTES_PER_POINT, body_index, ground};
+use super::{BYTES_PER_POINT, body_index, differ, ground};
 
 /// How finely primitives are shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,8 +90,9 @@ fn card(primitive: &Primitive, shape: &Shape, budget: &CardBudget) -> kineme::Re
             primitive.registered(i, phase)
         });
     }
-    ground(&mut sampled.places);
-    ground(&mut exemplary.places);
+    let placed = differ(sampled.heights.iter().chain(&exemplary.heights).copied());
+    ground(&mut sampled.places, placed);
+    ground(&mut exemplary.places, placed);
     let flow = flow(&sampled.poses, &exemplary.poses);
     Ok(Card {
         name: primitive.name().into(),
@@ -164,6 +165,7 @@ fn grid(primitive: &Primitive, nodes: &[usize]) -> Vec<Vec<f64>> {
 struct Sampled {
     places: Vec<Vec<[f64; 3]>>,
     poses: Vec<Vec<f64>>,
+    heights: Vec<f64>,
     clock: Vec<f64>,
 }
 
@@ -199,6 +201,7 @@ impl Sampled {
             self.places
                 .push(shape.of_frames(&body.frames(&sample.pose, &root)));
             self.poses.push(sample.pose.clone());
+            self.heights.push(sample.travel.height);
             self.clock.push(secs);
             before = Some(sample);
         }

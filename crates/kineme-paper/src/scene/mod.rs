@@ -28,18 +28,28 @@ pub fn body_index(scene: &mut Scene, body: &Body) -> usize {
 /// Thickness of a sole, metres: so far above the ground is the lowest point of who stands on it.
 const SOLE_M: f64 = 0.025;
 
-/// Lifts or lowers a movement so that it stands on the ground where it is lowest. Bodies whose root was never placed
-/// would be in the floor otherwise, and floors of studios are not all at zero.
-fn ground(rows: &mut [Vec<[f64; 3]>]) {
-    let heights = rows.iter().flatten().map(|p| p[2]);
-    let lowest = heights
-        .filter(|z| z.is_finite())
-        .fold(f64::INFINITY, f64::min);
-    if lowest.is_finite() {
-        for point in rows.iter_mut().flatten() {
-            point[2] += SOLE_M - lowest;
+/// Lifts or lowers a movement so that it stands on the ground where it is lowest: floors of studios are not all at zero.
+/// A body that was never `placed` in height, such as a choreographed one, stands on it at every moment.
+fn ground(rows: &mut [Vec<[f64; 3]>], placed: bool) {
+    let pieces = if placed { rows.len() } else { 1 };
+    for rows in rows.chunks_mut(pieces.max(1)) {
+        let heights = rows.iter().flatten().map(|p| p[2]);
+        let lowest = heights
+            .filter(|z| z.is_finite())
+            .fold(f64::INFINITY, f64::min);
+        if lowest.is_finite() {
+            for point in rows.iter_mut().flatten() {
+                point[2] += SOLE_M - lowest;
+            }
         }
     }
+}
+
+/// Whether heights differ at all.
+fn differ(heights: impl IntoIterator<Item = f64>) -> bool {
+    let mut heights = heights.into_iter();
+    let first = heights.next();
+    heights.any(|h| first.is_some_and(|f| (h - f).abs() > 1e-6))
 }
 
 /// Bytes that a point takes on the page: three numbers of 16 bits in base64.

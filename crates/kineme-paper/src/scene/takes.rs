@@ -6,7 +6,7 @@ use kineme::{Motion, Recording};
 use kineme_report::scene::{Actor, Places, Scene, Stretch, Take, Track};
 
 use super::flesh::Shape;
-use super::{BYTES_PER_POINT, body_index, ground};
+use super::{BYTES_PER_POINT, body_index, differ, ground};
 
 /// How much of motions a page shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,7 +59,10 @@ pub fn actor(scene: &mut Scene, name: &str, motion: &Motion, most_hz: f64) -> Ac
         .iter()
         .map(|&f| shape.of_frames(&motion.frames_at(f)))
         .collect();
-    ground(&mut rows);
+    ground(
+        &mut rows,
+        differ(motion.roots().iter().map(|r| r.position.z)),
+    );
     Actor {
         name: name.into(),
         body: body_index(scene, &shape.body),
@@ -87,7 +90,7 @@ pub fn actor_of_recording(
             shape.places(&placed)
         })
         .collect();
-    ground(&mut rows);
+    ground(&mut rows, true);
     Actor {
         name: name.into(),
         body: body_index(scene, &shape.body),
