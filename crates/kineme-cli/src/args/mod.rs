@@ -4,6 +4,7 @@ mod classify;
 mod encode;
 mod evaluate;
 mod model;
+mod reproduce;
 
 pub use classify::{ClassifierArgs, ClassifierName, ClassifyArgs};
 pub use encode::{EncodeArgs, EncodeMethod};
@@ -12,6 +13,7 @@ pub use model::{
     ChoreographArgs, EditArgs, InterpolationName, LearnArgs, Merging, ModelArgs, Parameters,
     Renaming, ShowArgs, SynthesizeArgs, Target,
 };
+pub use reproduce::{ReproduceArgs, Reproduced};
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -82,6 +84,7 @@ pub enum Command {
     Classify(Box<ClassifyArgs>),
     Encode(Box<EncodeArgs>),
     Demo(DemoArgs),
+    Reproduce(ReproduceArgs),
 }
 
 /// How files are read.

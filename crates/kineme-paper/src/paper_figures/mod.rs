@@ -29,6 +29,7 @@ use crate::demo;
 use crate::sets::Result;
 
 /// Pixels of a PNG to one of its SVG.
+#[cfg(feature = "png")]
 const PNG_SCALE: f64 = 2.0;
 
 /// The figures' names, in their order.
@@ -44,9 +45,15 @@ const SETS: [(&str, &str); 4] = [
     ("horizontal-waving.toml", include_str!("../../../../choreography/horizontal-waving.toml")),
 ];
 
+/// The kinds of file of each figure; without the feature `png` there is SVG alone.
+const KINDS: &[&str] = match cfg!(feature = "png") {
+    true => &["svg", "png"],
+    false => &["svg"],
+};
+
 /// The names of the files that [`write`] writes.
 pub fn files() -> Vec<String> {
-    let both = |name: &&str| ["svg", "png"].map(|kind| format!("{name}.{kind}"));
+    let both = |name: &&str| KINDS.iter().map(move |kind| format!("{name}.{kind}")).collect::<Vec<_>>();
     NAMES.iter().flat_map(both).collect()
 }
 
@@ -66,8 +73,7 @@ pub fn draw(seed: u64, watch: &mut dyn FnMut(&'static str)) -> Result<[String; 7
     watch("figure3");
     let chart = paper::flowchart(&chart());
     watch("figure4");
-    let punching = vocabulary(&["punching.toml"], &ares)?;
-    let relaxation = relaxation(&punching)?;
+    let relaxation = relaxation(&punching()?)?;
     watch("figure7");
     let encoded = encoded()?;
     Ok([
@@ -86,16 +92,31 @@ pub fn draw(seed: u64, watch: &mut dyn FnMut(&'static str)) -> Result<[String; 7
 /// # Errors
 /// When a file exists and is to be kept, or cannot be written.
 pub fn write(figures: &[String; 7], folder: &Path, existing: Existing) -> Result<()> {
-    let pictures: Vec<Vec<u8>> = figures
-        .par_iter()
-        .map(|svg| kineme_report::png(svg, PNG_SCALE))
-        .collect::<std::result::Result<_, _>>()?;
-    for ((name, svg), png) in NAMES.iter().zip(figures).zip(&pictures) {
-        let path = |kind: &str| folder.join(format!("{name}.{kind}"));
-        output::write_bytes(&path("svg"), existing, svg.as_bytes())?;
-        output::write_bytes(&path("png"), existing, png)?;
+    for (name, bytes) in files().iter().zip(contents(figures)?) {
+        output::write_bytes(&folder.join(name), existing, &bytes)?;
     }
     Ok(())
+}
+
+/// What is in the files, in the order of [`files`].
+fn contents(figures: &[String; 7]) -> Result<Vec<Vec<u8>>> {
+    let of = |svg: &String| {
+        #[cfg_attr(not(feature = "png"), expect(unused_mut))]
+        let mut both = vec![svg.clone().into_bytes()];
+        #[cfg(feature = "png")]
+        both.push(kineme_report::png(svg, PNG_SCALE)?);
+        Ok(both)
+    };
+    let all: Vec<Vec<Vec<u8>>> = figures.par_iter().map(of).collect::<Result<_>>()?;
+    Ok(all.into_iter().flatten().collect())
+}
+
+/// The vocabulary of Figures 4 to 6: punching on Adonis, whose elbows are hinges, so that an angle is an angle.
+///
+/// # Errors
+/// When the choreography is not sound.
+pub fn punching() -> Result<Vocabulary> {
+    vocabulary(&["punching.toml"], &Arc::new(kineme::adonis()?))
 }
 
 /// The primitives of some of the sets in one vocabulary of a body, sets in the order of [`SETS`].
