@@ -20,6 +20,9 @@ mod hand_paths;
 mod packed;
 mod page;
 mod palette;
+pub mod paper;
+#[cfg(feature = "png")]
+mod png;
 mod residual;
 pub mod scene;
 mod strip;
@@ -32,6 +35,8 @@ mod viewer;
 pub use embedding::{Embedding, embedding};
 pub use hand_paths::{GroupPaths, LOW_COHERENCE, hand_paths};
 pub use page::{Figure, Page};
+#[cfg(feature = "png")]
+pub use png::{PngError, png};
 pub use residual::residual_variance;
 pub use strip::strip;
 pub use table::Table;

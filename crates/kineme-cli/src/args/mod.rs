@@ -5,6 +5,7 @@ mod control;
 mod encode;
 mod evaluate;
 mod model;
+mod reproduce;
 mod view;
 
 pub use classify::{ClassifierArgs, ClassifierName, ClassifyArgs};
@@ -15,6 +16,7 @@ pub use model::{
     ChoreographArgs, EditArgs, InterpolationName, LearnArgs, Merging, ModelArgs, Parameters,
     Renaming, ShowArgs, SynthesizeArgs, Target,
 };
+pub use reproduce::{ReproduceArgs, Reproduced};
 pub use view::ViewArgs;
 
 use std::path::PathBuf;
@@ -91,6 +93,7 @@ pub enum Command {
     Control(Box<ControlArgs>),
     View(Box<ViewArgs>),
     Demo(DemoArgs),
+    Reproduce(ReproduceArgs),
 }
 
 /// How files are read.
