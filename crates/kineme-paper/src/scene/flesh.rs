@@ -250,7 +250,7 @@ impl<'a> Builder<'a> {
         let arm = self.chain(self.roles[&LeftUpperArm], self.roles[&Hips]);
         let top = chain.iter().rposition(|j| arm.contains(j)).unwrap_or(0);
         let trunk: Vec<usize> = chain[..=top].to_vec();
-        let pieces = (trunk.len() - 1).min(TRUNK_POINTS - 1).max(1);
+        let pieces = (trunk.len() - 1).clamp(1, TRUNK_POINTS - 1);
         let mut before = hips;
         for i in 1..=pieces {
             let share = i as f64 / pieces as f64;
@@ -349,8 +349,9 @@ impl<'a> Builder<'a> {
                 at = self.joints[j].parent;
             }
         }
-        for joint in 0..self.joints.len() {
-            if let (false, Some(parent)) = (covered[joint], self.joints[joint].parent) {
+        let bare = (0..covered.len()).filter(|&j| !covered[j]);
+        for joint in bare.collect::<Vec<_>>() {
+            if let Some(parent) = self.joints[joint].parent {
                 let ends = [self.joint(parent), self.joint(joint)];
                 self.bone(ends, [0.011, 0.010]);
             }
