@@ -11,6 +11,8 @@ use nalgebra::Vector3;
 
 /// Length of a leg that radii are given for, metres: that of Ares.
 const LEG_M: f64 = 0.856;
+/// From here on there is a chest between the highest joint of the trunk and the shoulders.
+const CHEST_M: f64 = 0.15;
 /// Points of the trunk between pelvis and neck.
 const TRUNK_POINTS: usize = 6;
 
@@ -264,6 +266,7 @@ impl<'a> Builder<'a> {
             self.bone([before, point], [radius(begun), radius(share)]);
             before = point;
         }
+        before = self.chest(before);
         for (arm, leg) in sides {
             let [Some(arm), Some(leg)] = [arm, leg].map(|r| self.role(r)) else {
                 continue;
@@ -279,6 +282,21 @@ impl<'a> Builder<'a> {
             self.bone([before, arm], [0.064, 0.056]);
         }
         self.neck_and_head(before, head);
+    }
+
+    /// The top of the trunk: between the shoulders, where the last joint below them is a waist.
+    fn chest(&mut self, last: usize) -> usize {
+        let arms = [Role::LeftUpperArm, Role::RightUpperArm].map(|r| self.role(r));
+        let [Some(left), Some(right)] = arms else {
+            return last;
+        };
+        let middle = self.spot(Spot::Between(left, right, 0.5));
+        let [a, b] = [last, middle].map(|i| Vector3::from(self.points[i]));
+        if (a - b).norm() < CHEST_M * self.scale {
+            return last;
+        }
+        self.bone([last, middle], [0.100, 0.064]);
+        middle
     }
 
     fn neck_and_head(&mut self, top: usize, head: usize) {
