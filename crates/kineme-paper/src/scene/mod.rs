@@ -11,7 +11,7 @@ mod takes;
 
 pub use cards::{CardBudget, cards};
 pub use flesh::Shape;
-pub use shows::takes_of_show;
+pub use shows::{take_of_performance, takes_of_show};
 pub use takes::{Shown, actor, actor_of_recording, spans, take_of_derived, thinned};
 
 use kineme_report::scene::{Body, Scene};

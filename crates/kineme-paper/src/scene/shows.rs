@@ -62,21 +62,12 @@ fn routine(scene: &mut Scene, show: &Show) -> Take {
                 &show.readings,
                 ares.done.rate_hz(),
             ),
-            Track::Line {
-                title: "Adonis, degrees from what it was told".into(),
-                rate_hz: MOMENTS_HZ,
-                start_secs: 0.0,
-                values: Floats::pack(off(&adonis.commanded, &adonis.done)),
-            },
+            error("Adonis", adonis),
         ],
     }
 }
 
 fn bout(scene: &mut Scene, show: &Show) -> Take {
-    let seen = show.attacker.seen.motion();
-    let mut attacker = actor(scene, "Attacker", seen, FRAMES_HZ);
-    attacker.colour = Some(1);
-    let adonis = actor(scene, "Adonis", &show.bout.done, FRAMES_HZ);
     let attacks = show.attacker.attacks.iter().map(|attack| Stretch {
         start: attack.start_secs,
         end: attack.end_secs,
@@ -84,26 +75,63 @@ fn bout(scene: &mut Scene, show: &Show) -> Take {
         colour: colour(&show.boxing, &attack.primitive),
         detail: String::new(),
     });
-    Take {
-        name: "Sparring".into(),
-        note:
-            "Adonis watches the attacker's joints, recognises the attack and answers with a shield."
-                .into(),
-        secs: seen.duration_secs(),
-        actors: vec![adonis, attacker],
-        tracks: vec![
-            Track::Spans {
-                title: "Attacks".into(),
-                spans: attacks.collect(),
-            },
-            posterior(
-                "What Adonis makes of them",
-                &show.boxing,
-                &show.heard,
-                seen.rate_hz(),
-            ),
-            ran("Its answers", &show.bout, &show.boxing),
-        ],
+    let attacks = Track::Spans {
+        title: "Attacks".into(),
+        spans: attacks.collect(),
+    };
+    let seen = show.attacker.seen.motion();
+    let mut take = take_of_performance(scene, &show.boxing, &show.bout, Some((seen, &show.heard)));
+    take.name = "Sparring".into();
+    take.note =
+        "Adonis watches the attacker's joints, recognises the attack and answers with a shield."
+            .into();
+    take.tracks.insert(0, attacks);
+    take
+}
+
+/// What a body did by a plan, and what it watched meanwhile with what was thought of it, frame by frame.
+pub fn take_of_performance(
+    scene: &mut Scene,
+    vocabulary: &Vocabulary,
+    performance: &Performance,
+    watched: Option<(&Motion, &[Reading])>,
+) -> Take {
+    let done = &performance.done;
+    let name = capital(done.skeleton().name());
+    let mut take = Take {
+        name: "What was done".into(),
+        secs: done.duration_secs(),
+        actors: vec![actor(scene, &name, done, FRAMES_HZ)],
+        ..Take::default()
+    };
+    if let Some((seen, readings)) = watched {
+        let mut other = actor(scene, "Watched", seen, FRAMES_HZ);
+        other.colour = Some(1);
+        take.actors.push(other);
+        take.secs = take.secs.max(seen.duration_secs());
+        take.tracks.push(posterior(
+            "What is made of what is watched",
+            vocabulary,
+            readings,
+            seen.rate_hz(),
+        ));
+    }
+    take.tracks.push(ran("Behaviors", performance, vocabulary));
+    take.tracks.push(error(&name, performance));
+    take
+}
+
+fn error(name: &str, performance: &Performance) -> Track {
+    let (_, rate_hz) = thinned(
+        performance.done.frames(),
+        performance.done.rate_hz(),
+        MOMENTS_HZ,
+    );
+    Track::Line {
+        title: format!("{name}, degrees from what it was told"),
+        rate_hz,
+        start_secs: 0.0,
+        values: Floats::pack(off(&performance.commanded, &performance.done)),
     }
 }
 
