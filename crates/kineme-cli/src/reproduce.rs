@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use kineme_paper::paper_figures;
 use serde::Serialize;
 
-use crate::args::{Global, Reproduced, ReproduceArgs};
+use crate::args::{Global, ReproduceArgs, Reproduced};
 use crate::failure::{Failure, print};
 use crate::json;
 use crate::outputs::{existing, refuse_existing};
