@@ -121,7 +121,7 @@ fn exemplars(
     coordinate: usize,
 ) -> Result<Vec<Vec<[f64; 2]>>> {
     const POSTURES: usize = 65;
-    let line = |i: usize| {
+    let line = |i: usize| -> Result<Vec<[f64; 2]>> {
         let course: Course = primitive.at(primitive.point(i))?;
         let at = |k: usize| k as f64 / (POSTURES - 1) as f64;
         let point = |k: usize| Ok([at(k), paper.place(&course.pose(at(k)))?[coordinate]]);
@@ -227,7 +227,7 @@ impl Relaxation {
             }
         }
         let first = self.parameters.first().map_or("p", String::as_str);
-        let others = self.parameters[1..].join(", ");
+        let others = self.parameters.get(1..).unwrap_or_default().join(", ");
         paper::ParameterSet {
             name: match others.is_empty() {
                 true => first.to_string(),

@@ -117,7 +117,7 @@ pub fn write(figures: &[String; 7], folder: &Path, existing: Existing) -> Result
 
 /// What is in the files, in the order of [`files`].
 fn contents(figures: &[String; 7]) -> Result<Vec<Vec<u8>>> {
-    let of = |svg: &String| {
+    let of = |svg: &String| -> Result<Vec<Vec<u8>>> {
         #[cfg_attr(not(feature = "png"), expect(unused_mut))]
         let mut both = vec![svg.clone().into_bytes()];
         #[cfg(feature = "png")]
@@ -141,7 +141,7 @@ pub(crate) fn vocabulary(names: &[&str], body: &Arc<Skeleton>) -> Result<Vocabul
     let chosen: Vec<_> = SETS.iter().filter(|(n, _)| names.contains(n)).collect();
     let sets: Vec<Vocabulary> = chosen
         .par_iter()
-        .map(|(name, text)| {
+        .map(|&&(name, text)| {
             let script = script::parse(name, text.as_bytes())?;
             Ok(script.vocabulary(body, &Modelling::default(), (name, None))?)
         })

@@ -162,7 +162,7 @@ fn draw_view(svg: &mut Svg, figure: &EncodedPaths) {
         around(y, edges[3] - edges[1]),
         edges,
     );
-    plot.draw(svg, &figure.view_axes[0], &figure.view_axes[1], [4, 5]);
+    plot.draw(svg, &figure.view_axes[0], &figure.view_axes[1], [5, 6]);
     svg.polyline(OBSERVED, &plot.curve(&figure.observed_view));
     svg.polyline(ENCODED, &plot.curve(&figure.encoded_view));
     for decision in &figure.decisions {
@@ -213,28 +213,28 @@ fn draw_bars(svg: &mut Svg, figure: &EncodedPaths, plot: &Plot, top: f64) -> f64
     );
     svg.text(
         right + 14.0,
-        top + 14.0,
+        top + 54.0,
         Anchor::Start,
         head,
         "likeness of each",
     );
     svg.text(
         right + 14.0,
-        top + 29.0,
+        top + 69.0,
         Anchor::Start,
         head,
         "primitive's prediction",
     );
     svg.text(
         right + 14.0,
-        top + 46.0,
+        top + 88.0,
         Anchor::Start,
         SMALL,
         "full height = 1;",
     );
     svg.text(
         right + 14.0,
-        top + 60.0,
+        top + 103.0,
         Anchor::Start,
         SMALL,
         "filled: takes the decision",
