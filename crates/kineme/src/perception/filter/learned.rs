@@ -181,7 +181,9 @@ pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned
     let usual = Learned::usual(vocabulary.primitives().len());
     let trials = trials(filter, &folds, &evidences);
     let limits = limits(vocabulary, &trials, &evidences, kept, &usual);
-    let temperature = temperature(&trials).unwrap_or(usual.temperature);
+    let temperature = temperature(&trials)
+        .or_else(|| Some(chance_lead(&trials)?.max(usual.temperature)))
+        .unwrap_or(usual.temperature);
     let mut learned = Learned {
         temperature,
         limits,
@@ -217,18 +219,19 @@ pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned
             .collect();
         let keeping = quantile(&room, 1.0 - CALLED).unwrap_or(learned.bias);
         learned.bias = learned.bias.min(keeping - MARGIN);
-        let gains = |unknown: bool| -> Vec<f64> {
-            told.iter()
-                .filter(|t| t.1 == unknown)
-                .map(|t| t.0[0])
-                .collect()
-        };
-        // Between what the least of the known gains over movement of any kind, and what the unknown gains.
-        let (known, unknown) = (gains(false), gains(true));
-        if let (Some(low), Some(high)) = (quantile(&known, 1.0 - KEPT), median(&unknown)) {
-            learned.unknown_per_sec = 0.5 * (low + low.min(high));
-        }
     }
+    let gains = |unknown: bool| -> Vec<f64> {
+        let of = told.iter().filter(|t| t.1 == unknown);
+        of.map(|t| t.0[0]).collect()
+    };
+    let (known, unknown) = (gains(false), gains(true));
+    learned.unknown_per_sec = match (quantile(&known, 1.0 - KEPT), median(&unknown)) {
+        // Between what the least of the known gains over movement of any kind, and what the unknown gains.
+        (Some(low), Some(high)) => 0.5 * (low + low.min(high)),
+        // Of single exemplars nobody knows what the known gain, but they gain more than the unknown.
+        (None, Some(high)) => high.min(usual.unknown_per_sec),
+        _ => usual.unknown_per_sec,
+    };
     Ok(learned)
 }
 
@@ -345,6 +348,20 @@ fn temperature(trials: &[Trial]) -> Option<f64> {
     };
     let candidates = (0..=60).map(|k| 10f64.powf(-0.5 + 3.0 * f64::from(k) / 60.0));
     candidates.min_by(|a, b| all(*a).total_cmp(&all(*b)))
+}
+
+/// How far the likeliest of wrong answers leads the second, as a rule, a second of the clip: less than that tells nothing.
+/// It stands for the temperature where every primitive has one exemplar, and nothing known can be left out. `None` where
+/// less than three primitives are.
+fn chance_lead(trials: &[Trial]) -> Option<f64> {
+    let lead = |trial: &Trial| {
+        let mut classes = trial.classes.clone();
+        classes.sort_by(|a, b| b.total_cmp(a));
+        let [first, second] = *classes.first_chunk()?;
+        Some((first - second) / trial.secs).filter(|lead| lead.is_finite())
+    };
+    let unknown = trials.iter().filter(|t| t.truth.is_none());
+    median(&unknown.filter_map(lead).collect::<Vec<f64>>())
 }
 
 /// Less the logarithm of a primitive's probability among all, of the most probable one if none is named.
