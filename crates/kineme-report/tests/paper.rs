@@ -150,10 +150,22 @@ fn a_png_is_as_large_as_it_should_be_and_shows_its_words() {
     let picture = png(svg, 2.0).expect("a picture");
     assert_eq!(picture, png(svg, 2.0).expect("a picture"));
     let side = |at: usize| u32::from_be_bytes(picture[at..at + 4].try_into().expect("four bytes"));
-    assert_eq!((&picture[1..4], side(16), side(20)), (&b"PNG"[..], 600, 400));
+    assert_eq!(
+        (&picture[1..4], side(16), side(20)),
+        (&b"PNG"[..], 600, 400)
+    );
     let mute = svg.replace("a &amp; b", "");
-    assert_ne!(picture, png(&mute, 2.0).expect("a picture"), "text is drawn");
-    for (svg, scale) in [("no svg", 1.0), (svg.as_str(), 0.0), (svg.as_str(), 1e6), (svg.as_str(), f64::NAN)] {
+    assert_ne!(
+        picture,
+        png(&mute, 2.0).expect("a picture"),
+        "text is drawn"
+    );
+    for (svg, scale) in [
+        ("no svg", 1.0),
+        (svg.as_str(), 0.0),
+        (svg.as_str(), 1e6),
+        (svg.as_str(), f64::NAN),
+    ] {
         assert!(png(svg, scale).is_err(), "{scale}");
     }
 }
