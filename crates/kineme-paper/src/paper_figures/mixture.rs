@@ -10,9 +10,9 @@ use crate::sets::Result;
 /// The primitive, the joint that was observed (the paper's joint 2), its value in radians, and the joint whose density
 /// is sought (joint 1).
 const PRIMITIVE: &str = "punch-out";
-const OBSERVED: &str = "right_elbow";
-const VALUE_RAD: f64 = 0.9;
-const SOUGHT: &str = "right_upper_arm_y";
+const OBSERVED: &str = "right_upper_arm_y";
+const VALUE_RAD: f64 = -0.6;
+const SOUGHT: &str = "right_elbow";
 /// Points of a density's curve.
 const POINTS: usize = 241;
 /// Strips of the first parameter in which the exact set is counted.
