@@ -23,6 +23,7 @@ mod observed;
 mod outputs;
 mod progress;
 mod recognisers;
+mod reproduce;
 mod show;
 mod source;
 mod synthesize;
@@ -82,5 +83,6 @@ fn run(cli: &Cli) -> Result<u8, Failure> {
         Command::Control(args) => control::run(args, &cli.global),
         Command::Encode(args) => encode::run(args, &cli.global),
         Command::Demo(args) => demo::run(args, &cli.global),
+        Command::Reproduce(args) => reproduce::run(args, &cli.global),
     }
 }

@@ -120,7 +120,7 @@ fn paths(derived: &Derived, motions: &[Motion]) -> Vec<GroupPaths> {
 }
 
 /// Paths of the left and the right wrist in the thorax frame, metres; empty for a body without arms.
-fn wrists(motion: &Motion, frames: std::ops::Range<usize>) -> [Vec<[f64; 3]>; 2] {
+pub(crate) fn wrists(motion: &Motion, frames: std::ops::Range<usize>) -> [Vec<[f64; 3]>; 2] {
     let body = motion.skeleton();
     let mut paths = [Vec::new(), Vec::new()];
     let [Some(left), Some(right)] = ["left_hand", "right_hand"].map(|name| effector(body, name))

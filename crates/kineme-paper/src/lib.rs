@@ -14,6 +14,7 @@ mod kmeans;
 pub mod model_table;
 pub mod models;
 pub mod out_and_back;
+pub mod paper_figures;
 pub mod postures;
 pub mod recognition;
 pub mod sets;

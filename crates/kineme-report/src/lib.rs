@@ -16,6 +16,9 @@ mod embedding;
 mod hand_paths;
 mod page;
 mod palette;
+pub mod paper;
+#[cfg(feature = "png")]
+mod png;
 mod residual;
 mod svg;
 mod timeline;
@@ -24,6 +27,8 @@ mod transitions;
 pub use embedding::{Embedding, embedding};
 pub use hand_paths::{GroupPaths, LOW_COHERENCE, hand_paths};
 pub use page::{Figure, page};
+#[cfg(feature = "png")]
+pub use png::{PngError, png};
 pub use residual::residual_variance;
 pub use timeline::{Row, Span, timeline};
 pub use transitions::transitions;

@@ -5,6 +5,7 @@ mod control;
 mod encode;
 mod evaluate;
 mod model;
+mod reproduce;
 
 pub use classify::{ClassifierArgs, ClassifierName, ClassifyArgs};
 pub use control::{ControlArgs, ServoName};
@@ -14,6 +15,7 @@ pub use model::{
     ChoreographArgs, EditArgs, InterpolationName, LearnArgs, Merging, ModelArgs, Parameters,
     Renaming, ShowArgs, SynthesizeArgs, Target,
 };
+pub use reproduce::{ReproduceArgs, Reproduced};
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -87,6 +89,7 @@ pub enum Command {
     Encode(Box<EncodeArgs>),
     Control(Box<ControlArgs>),
     Demo(DemoArgs),
+    Reproduce(ReproduceArgs),
 }
 
 /// How files are read.

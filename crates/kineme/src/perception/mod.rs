@@ -12,5 +12,5 @@ mod spans;
 
 pub use calibration::calibrated;
 pub use filter::{Filter, FilterSettings};
-pub use frame::{Frame, FrameSettings};
-pub use paper::{Paper, PaperSettings};
+pub use frame::{Frame, FrameSettings, Patch};
+pub use paper::{Bars, Mixture, Paper, PaperSettings};

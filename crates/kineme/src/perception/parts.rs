@@ -31,6 +31,8 @@ pub(super) struct Parts {
     part_of: Vec<usize>,
     /// The joint limits of each coordinate, radians.
     limits: Vec<[f64; 2]>,
+    /// The name of each coordinate.
+    names: Vec<String>,
 }
 
 impl Parts {
@@ -41,6 +43,7 @@ impl Parts {
             balls: Vec::new(),
             part_of: Vec::new(),
             limits: Vec::new(),
+            names: Vec::new(),
         };
         let mut roles = Vec::new();
         // Of each part, the first coordinate of its ball.
@@ -72,6 +75,12 @@ impl Parts {
                 if at.len() == 3 {
                     chains[part] = Some(first);
                     parts.balls.push(first);
+                    let of = joint.role.map_or(joint.name.as_str(), |r| r.name());
+                    parts
+                        .names
+                        .extend(["x", "y", "z"].map(|axis| format!("{of}_{axis}")));
+                } else {
+                    parts.names.extend(at.clone().map(|_| joint.name.clone()));
                 }
                 parts.part_of.extend(at.clone().map(|_| part));
                 parts.limits.extend(limits);
@@ -101,6 +110,11 @@ impl Parts {
     /// The part of a coordinate.
     pub fn part_of(&self, coordinate: usize) -> usize {
         self.part_of[coordinate]
+    }
+
+    /// The name of each coordinate: a hinge's own, or a ball's role with the axis of its rotation vector.
+    pub fn names(&self) -> &[String] {
+        &self.names
     }
 
     /// A pose in these coordinates: a linear map.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::cost::Instants;
+use super::encoder::Seen;
 use super::paths::Chains;
 use super::rows::{Row, moved};
 use super::settings::{EncodingSettings, SAMPLES};
@@ -28,10 +28,8 @@ pub(super) struct Course<'a> {
     pub rows: &'a [Row],
     pub settings: &'a EncodingSettings,
     /// What was seen, metres of the observer.
-    pub instants: &'a Instants,
-    /// Metres of the observer that are a unit of a row.
-    pub unit_m: &'a dyn Fn(&Row) -> f64,
-    /// The same of no row in particular, and the metres on the body that it is.
+    pub seen: &'a Seen,
+    /// Metres of the observer that are a unit of no row in particular, and the metres on the body that it is.
     pub usual_m: [f64; 2],
 }
 
@@ -42,7 +40,7 @@ impl Course<'_> {
         let body = self.vocabulary.body();
         let step = s.cell_secs();
         let cells = s.cells(1.0, SAMPLES) as usize;
-        let last = s.cells(1.0, self.instants.len().saturating_sub(1)) as usize;
+        let last = s.cells(1.0, self.seen.instants.len().saturating_sub(1)) as usize;
         let follower = Follower::of(body, s)?;
         let mut pose = self.start();
         let mut root = Root::ORIGIN;
@@ -63,7 +61,7 @@ impl Course<'_> {
                     begun,
                 } => {
                     let row = &self.rows[row];
-                    factor = row.unit_m / (self.unit_m)(row);
+                    factor = row.unit_m / self.seen.unit_m(row);
                     let primitive = &self.vocabulary.primitives()[row.primitive];
                     let phase = row.phase(from as f64 + rate * ahead as f64);
                     let sample = primitive.registered(row.exemplar, phase);
@@ -101,10 +99,10 @@ impl Course<'_> {
     pub fn start(&self) -> Vec<f64> {
         let mut least = (f64::INFINITY, 0, 0);
         for (r, row) in self.rows.iter().enumerate() {
-            let unit = (self.unit_m)(row);
+            let unit = self.seen.unit_m(row);
             for c in 0..row.cells() {
                 let mut far = 0.0;
-                for (e, p) in self.instants[0].iter().enumerate() {
+                for (e, p) in self.seen.instants[0].iter().enumerate() {
                     let Some(p) = p else { continue };
                     let gaps = (0..3).map(|a| p[a] / unit - f64::from(row.track(e, a)[c]));
                     far += gaps.map(|g| g * g).sum::<f64>();
@@ -125,10 +123,10 @@ impl Course<'_> {
 
     /// The effectors between two instants.
     pub fn seen(&self, at: f64) -> Vec<Option<Vector3<f64>>> {
-        let end = self.instants.len() - 1;
+        let end = self.seen.instants.len() - 1;
         let k = (at.floor() as usize).min(end);
         let share = at - k as f64;
-        let (a, b) = (&self.instants[k], &self.instants[(k + 1).min(end)]);
+        let (a, b) = (&self.seen.instants[k], &self.seen.instants[(k + 1).min(end)]);
         let pairs = a.iter().zip(b);
         pairs
             .map(|(a, b)| match share > 1e-9 {

@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::primitive::{FlowSettings, Flowfield, Vocabulary};
 
 /// Effectors of one instant, metres on the body.
-type Points = Vec<Option<Vector3<f64>>>;
+pub(super) type Points = Vec<Option<Vector3<f64>>>;
 
 /// The primitives' flowfields.
 #[derive(Debug, Clone)]
@@ -29,6 +29,8 @@ pub(super) struct Decision {
     pub winner: usize,
     /// The winner's postures, one an instant.
     pub poses: Vec<Vec<f64>>,
+    /// What each primitive predicts, at all instants looked at.
+    pub predicted: Vec<Vec<Points>>,
 }
 
 impl Literal {
@@ -51,6 +53,7 @@ impl Literal {
     ) -> Result<Option<Decision>> {
         let rate = 1.0 / s.sample_secs();
         let mut costs = Vec::with_capacity(self.fields.len());
+        let mut all = Vec::with_capacity(self.fields.len());
         let mut best: Option<(f64, usize, Vec<Vec<f64>>)> = None;
         for (k, field) in self.fields.iter().enumerate() {
             let state = field.enter(pose)?;
@@ -59,6 +62,7 @@ impl Literal {
             predicted.extend(states.iter().map(|state| chains.posture(state.pose()).0));
             let cost = unlikeness(&predicted, seen, s.matching, s.sample_secs());
             costs.push(cost);
+            all.push(predicted);
             if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
                 let poses = states[..span].iter().map(|state| state.pose().to_vec());
                 best = Some((cost, k, poses.collect()));
@@ -68,6 +72,7 @@ impl Literal {
             costs,
             winner,
             poses,
+            predicted: all,
         }))
     }
 }

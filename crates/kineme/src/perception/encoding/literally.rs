@@ -2,18 +2,14 @@
 
 use std::sync::Arc;
 
-use super::encoded::Course;
 use super::encoder::{Encoder, Seen};
 use super::literal::Literal;
-use super::paths::{Chains, EffectorPaths};
-use super::result::{EncodedSpan, Encoding, best_two, decisions, rmse_m};
+use super::paths::EffectorPaths;
+use super::result::{EncodedSpan, Encoding, rmse_m};
 use crate::error::Result;
 use crate::motion::Motion;
 use crate::primitive::Posterior;
 use crate::skeleton::Root;
-
-/// An unlikeness (square metres) at which likeness has fallen to 1/e: effectors 30 cm off.
-const UNLIKE: f64 = 0.09;
 
 impl Encoder<'_> {
     /// Encodes as the paper does: the primitive that takes the most time is the label, nothing is rejected.
@@ -26,53 +22,35 @@ impl Encoder<'_> {
     ) -> Result<Encoding> {
         let s = &self.settings;
         let body = self.vocabulary.body();
-        let chains = Chains::of(body, &s.effectors)?;
-        let usual_m = [self.usual_unit_m(seen), self.usual_row_m()];
-        let factor = usual_m[1] / usual_m[0];
-        let course = Course {
-            vocabulary: self.vocabulary,
-            rows: &self.rows,
-            settings: s,
-            instants: &seen.instants,
-            unit_m: &|row| seen.unit_m(row),
-            usual_m,
-        };
-        let mut poses = vec![course.start()];
+        let (decided, poses) = self.decided(seen, literal, self.course(seen).start())?;
         let primitives = self.vocabulary.primitives().len();
         let mut sums = vec![0.0; primitives];
         let mut time = vec![0.0; primitives];
         let mut spans: Vec<EncodedSpan> = Vec::new();
-        for (first, span) in decisions(seen.instants.len()) {
-            let last = (first + s.horizon().max(span)).min(seen.instants.len() - 1);
-            let ahead = seen.instants[first..=last].iter();
-            let ahead: Vec<Vec<_>> = ahead
-                .map(|points| points.iter().map(|p| p.map(|p| factor * p)).collect())
-                .collect();
-            let Some(decision) = literal.decide(&chains, &poses[first], &ahead, span, s)? else {
-                break;
-            };
-            let secs = span as f64 * s.sample_secs();
-            let alike = |cost: f64| (-cost / UNLIKE).exp();
-            let [best, second] = best_two(&decision.costs, Some(decision.winner)).map(alike);
-            time[decision.winner] += secs;
-            for (sum, cost) in sums.iter_mut().zip(&decision.costs) {
-                *sum += secs * alike(*cost);
+        for decision in &decided {
+            let secs = decision.instants() as f64 * s.sample_secs();
+            let winner = decision.winner;
+            let alike = decision.similarities.iter();
+            let others = alike.clone().enumerate().filter(|(k, _)| *k != winner);
+            let second = others.map(|(_, a)| *a).fold(0.0, f64::max);
+            let best = decision.similarities[winner];
+            time[winner] += secs;
+            for (sum, alike) in sums.iter_mut().zip(alike) {
+                *sum += secs * alike;
             }
-            let start = first as f64 * s.sample_secs();
-            poses.extend(decision.poses);
             match spans.last_mut() {
                 // Means over what the span has become.
-                Some(last) if last.primitive == Some(decision.winner) => {
+                Some(last) if last.primitive == Some(winner) => {
                     let old = last.end_secs - last.start_secs;
                     let mean = |a: f64, b: f64| (old * a + secs * b) / (old + secs);
                     last.similarity = mean(last.similarity, best);
                     last.margin = mean(last.margin, best - second);
-                    last.end_secs = start + secs;
+                    last.end_secs = decision.end_secs;
                 }
                 _ => spans.push(EncodedSpan {
-                    start_secs: start,
-                    end_secs: start + secs,
-                    primitive: Some(decision.winner),
+                    start_secs: decision.start_secs,
+                    end_secs: decision.end_secs,
+                    primitive: Some(winner),
                     similarity: best,
                     margin: best - second,
                     confidence: 1.0,
@@ -86,6 +64,7 @@ impl Encoder<'_> {
         let roots = vec![Root::ORIGIN; poses.len()];
         let rate = 1.0 / s.sample_secs();
         let motion = Motion::new(name, Arc::clone(body), rate, poses.concat(), roots)?;
+        let factor = self.usual_row_m() / self.usual_unit_m(seen);
         let factors = vec![factor; seen.instants.len()];
         Ok(Encoding {
             rmse_m: rmse_m(&motion, seen, &factors, 1, s)?,

@@ -4,6 +4,7 @@
 mod calibration;
 mod chains;
 mod cost;
+mod decided;
 mod encoded;
 mod encoder;
 mod extrapolation;
@@ -18,6 +19,7 @@ mod rows;
 mod settings;
 mod track;
 
+pub use decided::Decided;
 pub use encoder::Encoder;
 pub use paths::EffectorPaths;
 pub use rejection::{Rejection, SCORES};

@@ -61,6 +61,17 @@ pub(super) fn likeness(cost: f64) -> f64 {
 }
 
 impl Encoder<'_> {
+    /// What the winners of an observation are to be joined from.
+    pub(super) fn course<'a>(&'a self, seen: &'a Seen) -> Course<'a> {
+        Course {
+            vocabulary: self.vocabulary,
+            rows: &self.rows,
+            settings: &self.settings,
+            seen,
+            usual_m: [self.usual_unit_m(seen), self.usual_row_m()],
+        }
+    }
+
     /// Encodes paths.
     ///
     /// # Errors
@@ -76,14 +87,7 @@ impl Encoder<'_> {
     fn by_hypotheses(&self, name: &str, paths: &EffectorPaths, seen: &Seen) -> Result<Encoding> {
         let verdict = self.judge(seen);
         let legs = self.kept(&verdict);
-        let course = Course {
-            vocabulary: self.vocabulary,
-            rows: &self.rows,
-            settings: &self.settings,
-            instants: &seen.instants,
-            unit_m: &|row| seen.unit_m(row),
-            usual_m: [self.usual_unit_m(seen), self.usual_row_m()],
-        };
+        let course = self.course(seen);
         let (motion, factors) = course.motion(name, &legs)?;
         let every = self.settings.cells(1.0, 1) as usize;
         let at_instants: Vec<f64> = factors.into_iter().step_by(every).collect();
@@ -207,7 +211,7 @@ impl Encoder<'_> {
 }
 
 /// The cost of a primitive, or of the best one, and of the best of the others.
-pub(super) fn best_two(costs: &[f64], primitive: Option<usize>) -> [f64; 2] {
+fn best_two(costs: &[f64], primitive: Option<usize>) -> [f64; 2] {
     let at = |k: &usize| costs[*k];
     let best = primitive.or_else(|| (0..costs.len()).min_by(|a, b| at(a).total_cmp(&at(b))));
     let others = (0..costs.len()).filter(|k| Some(*k) != best);

@@ -7,10 +7,12 @@
 
 mod cells;
 mod chain;
+mod conditional;
 mod listener;
 mod settings;
 mod tree;
 
+pub use conditional::Patch;
 pub use settings::FrameSettings;
 
 use cells::Cells;

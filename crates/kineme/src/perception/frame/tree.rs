@@ -207,6 +207,15 @@ impl Tree {
         pairs.all(|(b, x)| !(b[0] - x > self.delta || x - b[1] > self.delta))
     }
 
+    /// The box of each cell by its number, all coordinates in the order of the columns.
+    pub fn boxes(&self) -> Vec<&[[f32; 2]]> {
+        let mut boxes: Vec<&[[f32; 2]]> = vec![&[]; self.cells.len()];
+        for (at, &cell) in self.cells.iter().enumerate() {
+            boxes[cell as usize] = self.cell_box(at);
+        }
+        boxes
+    }
+
     /// All cells whose box a posture lies in, in the order of cells.
     pub fn hits(&self, query: &Query) -> Vec<Hit> {
         let mut hits = Vec::new();

@@ -92,13 +92,15 @@ pub(super) struct Class {
     order: Vec<Coordinate>,
 }
 
+/// One coordinate of a primitive.
 #[derive(Debug)]
-struct Coordinate {
-    at: usize,
-    envelope: Envelope,
-    histogram: Histogram,
+pub(super) struct Coordinate {
+    /// Its place in a posture.
+    pub at: usize,
+    pub envelope: Envelope,
+    pub histogram: Histogram,
     /// The logarithm of the range of the uniform density under "not this primitive".
-    log_range: f64,
+    pub log_range: f64,
 }
 
 impl Class {
@@ -131,6 +133,16 @@ impl Class {
             cyclic,
             order: order.into_iter().map(|(_, c)| c).collect(),
         }
+    }
+
+    /// The coordinates in the order of the chain.
+    pub fn chain(&self) -> &[Coordinate] {
+        &self.order
+    }
+
+    /// The samples of one coordinate, phase by phase.
+    pub fn samples(&self, at: usize) -> Vec<Vec<f64>> {
+        self.samples.coordinate(at)
     }
 
     /// The logarithm of the density of postures in the order of time over that of the uniform density, and the phases

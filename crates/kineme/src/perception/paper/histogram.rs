@@ -64,6 +64,27 @@ impl Histogram {
     /// sample, one sample's worth.
     pub fn density(&self, x: f64, delta: f64, within: &Intervals) -> f64 {
         let (first, last) = (self.bin(x - delta), self.bin(x + delta));
+        let (count, all) = self.count(within, first, last);
+        let width = self.width * (last + 1 - first) as f64;
+        f64::from(count.max(1)) / (all * width)
+    }
+
+    /// The ends of all bins, one more than bins, and the density in each, 1/rad, of samples whose phase lies in
+    /// `within`: the histogram itself, of which [`Self::density`] reads a few bins.
+    pub fn bars(&self, within: &Intervals) -> (Vec<f64>, Vec<f64>) {
+        let edge = |b: usize| self.origin + self.width * b as f64;
+        let density = |b: usize| {
+            let (count, all) = self.count(within, b, b);
+            f64::from(count) / (all * self.width)
+        };
+        (
+            (0..=self.bins).map(edge).collect(),
+            (0..self.bins).map(density).collect(),
+        )
+    }
+
+    /// How many samples whose phase lies in `within` are in these bins, and how many there are in all.
+    fn count(&self, within: &Intervals, first: usize, last: usize) -> (u32, f64) {
         let row = self.bins + 1;
         let phases = self.sums.len() / row - 1;
         let (mut count, mut columns) = (0u32, 0usize);
@@ -84,9 +105,7 @@ impl Histogram {
             let at = |i: usize, q: usize| self.sums[i * row + q];
             count += at(b, last + 1) + at(a, first) - at(a, last + 1) - at(b, first);
         }
-        let all = (columns.max(1) * self.samples) as f64;
-        let width = self.width * (last + 1 - first) as f64;
-        f64::from(count.max(1)) / (all * width)
+        (count, (columns.max(1) * self.samples) as f64)
     }
 }
 

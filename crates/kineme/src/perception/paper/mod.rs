@@ -12,8 +12,10 @@ mod class;
 mod histogram;
 mod intervals;
 mod settings;
+mod steps;
 
 pub use settings::PaperSettings;
+pub use steps::{Bars, Mixture};
 
 use std::collections::VecDeque;
 
