@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
-use kineme_formats::output::{Existing, write};
+use kineme_formats::output::{Existing, write_bytes};
 use kineme_paper::encoding_test::encoding_test;
 use kineme_paper::paper_figures;
 use kineme_paper::table1::{MovementSettings, TableSettings, table1};
@@ -122,5 +122,5 @@ fn make(
 }
 
 fn put(path: &Path, text: &str, existing: Existing) -> Result<(), Failure> {
-    write(path, text.as_bytes(), existing).map_err(unwritten)
+    write_bytes(path, existing, text.as_bytes()).map_err(unwritten)
 }
