@@ -213,7 +213,7 @@ fn asked(
     let mut kinds = Vec::new();
     for (archive, label, truth) in RESEMBLING {
         let file = format!("{archive}.zip");
-        let of = |r: &&IndexRow| r.archive == file && [r.content(), &r.label].contains(&label);
+        let of = |r: &&IndexRow| r.archive == file && [r.content(), r.label.as_str()].contains(&label);
         for row in rows.iter().filter(of).step_by(every.max(1)) {
             picked.push(row);
             kinds.push((format!("{archive}, {label}"), truth, LEFT_HANDED.contains(&label)));

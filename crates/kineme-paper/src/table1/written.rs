@@ -296,7 +296,7 @@ impl Table {
         writer.write_record(&head)?;
         let damaged = self.damaged.iter().map(|(name, row)| (name.as_str(), row));
         let parts = [("table", &self.rows), ("altered", &self.altered), ("grid", &self.grid)];
-        let parts = parts.iter().flat_map(|(p, rows)| rows.iter().map(|r| (*p, r)));
+        let parts = parts.iter().flat_map(|(p, rows)| rows.iter().map(move |r| (*p, r)));
         for (part, row) in parts.chain(damaged) {
             let (n, stride) = row.mode.postures().unzip();
             let count = |v: Option<usize>| v.map_or(String::new(), |v| v.to_string());
