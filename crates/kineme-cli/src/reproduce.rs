@@ -57,7 +57,9 @@ pub fn run(args: &ReproduceArgs, global: &Global) -> Result<u8, Failure> {
                 Reproduced::Figures => {
                     "Figures 1 to 7 of the paper, on the choreographed movements that come with kineme"
                 }
-                Reproduced::All => "Table I, the trajectory encoding test and the figures of the paper",
+                Reproduced::All => {
+                    "Table I, the trajectory encoding test and the figures of the paper"
+                }
             };
             format!("{made}:\n\n  {}\n", shown.join("\n  "))
         }
@@ -76,7 +78,10 @@ fn corpus(args: &ReproduceArgs) -> Result<PathBuf, Failure> {
     if corpus.join("index.csv").is_file() {
         return Ok(corpus);
     }
-    let message = format!("{}: no motion capture: no index.csv there", corpus.display());
+    let message = format!(
+        "{}: no motion capture: no index.csv there",
+        corpus.display()
+    );
     Err(Failure::usage(message).hint("--corpus names the folder that holds it"))
 }
 
@@ -105,7 +110,10 @@ fn make(
         put("table1.md", &table.markdown().map_err(failed)?)?;
         put("table1.csv", &table.csv().map_err(failed)?)?;
         if args.timings {
-            put("table1-times.md", &table.timings_markdown().map_err(failed)?)?;
+            put(
+                "table1-times.md",
+                &table.timings_markdown().map_err(failed)?,
+            )?;
         }
     }
     if wants(Reproduced::Encoding) {

@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use crate::choreographies::{SCRIPTS, choreography};
 use crate::recognition::exercises::Exercises;
 use crate::sets::{IndexRow, Result, index, load};
+use crate::table1::ALL_ZERO;
 
 /// The four sets of primitives: scripts of `choreography/`. The paper names the first three; Figure 2 shows the fourth.
 pub const SETS: [&str; 4] = ["vertical-waving", "punching", "twist", "horizontal-waving"];
@@ -213,13 +214,22 @@ fn asked(
     let mut kinds = Vec::new();
     for (archive, label, truth) in RESEMBLING {
         let file = format!("{archive}.zip");
-        let of = |r: &&IndexRow| r.archive == file && [r.content(), r.label.as_str()].contains(&label);
+        let of = |r: &&IndexRow| {
+            let named = [r.content(), r.label.as_str()].contains(&label);
+            r.archive == file && named && !r.file.contains(ALL_ZERO)
+        };
         for row in rows.iter().filter(of).step_by(every.max(1)) {
             picked.push(row);
-            kinds.push((format!("{archive}, {label}"), truth, LEFT_HANDED.contains(&label)));
+            kinds.push((
+                format!("{archive}, {label}"),
+                truth,
+                LEFT_HANDED.contains(&label),
+            ));
         }
     }
-    let set = load(corpus, &picked, vocabulary.body(), None, &|r| r.label.clone())?;
+    let set = load(corpus, &picked, vocabulary.body(), None, &|r| {
+        r.label.clone()
+    })?;
     let mut asked = Vec::new();
     for ((kind, truth, left), motion) in kinds.into_iter().zip(set.motions) {
         let motion = if left { motion.mirrored()? } else { motion };

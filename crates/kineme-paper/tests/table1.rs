@@ -9,8 +9,8 @@ use kineme::{Motion, Role, Root, Vocabulary};
 use kineme_paper::choreographies::{SCRIPTS, choreography};
 use kineme_paper::encoding_test::{Answer, RESEMBLING, SETS, wilson};
 use kineme_paper::table1::{
-    Altered, Clip, Counts, Decisions, MEASURES, Measure, Mode, MovementSettings, Row, Showing, Tally,
-    animations, drawn, garwood, hybrids, movements, plan, recorded, reversed, shows,
+    Altered, Clip, Counts, Decisions, MEASURES, Measure, Mode, MovementSettings, Row, Showing,
+    Tally, animations, drawn, garwood, hybrids, movements, plan, recorded, reversed, shows,
 };
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -24,11 +24,9 @@ fn boxing() -> &'static Vocabulary {
     })
 }
 
-fn drawing() -> Robot0 {
+fn drawing() -> Box<dyn Robot> {
     Box::new(KinematicRobot::new(Arc::clone(boxing().body())))
 }
-
-type Robot0 = Box<dyn Robot>;
 
 const LITTLE: MovementSettings = MovementSettings {
     clips: 2,
@@ -56,7 +54,10 @@ fn parameters_of_exemplars_are_never_drawn() {
     }
     let plan = plan(boxing(), 30, &mut random).expect("a plan");
     plan.check(boxing(), None).expect("a plan that can be done");
-    assert!(plan.behaviors.iter().any(|b| b.priority == 1), "interruptions");
+    assert!(
+        plan.behaviors.iter().any(|b| b.priority == 1),
+        "interruptions"
+    );
 }
 
 #[test]
@@ -103,7 +104,12 @@ fn animations_are_more_than_fifty_and_none_of_the_behaviors() {
 fn exactly_what_is_to_be_altered_is() {
     let body = boxing().body();
     let clip = &animations(body).expect("animations")[0];
-    let hands = [Role::LeftHand, Role::LeftFingers, Role::RightHand, Role::RightFingers];
+    let hands = [
+        Role::LeftHand,
+        Role::LeftFingers,
+        Role::RightHand,
+        Role::RightFingers,
+    ];
     let hands: Vec<usize> = hands.iter().flat_map(|r| body.joints_of(*r)).collect();
     let guard = &boxing().primitives()[0];
     let guard = guard.pose(&guard.middle(), 0.0).expect("the guard");
@@ -114,7 +120,10 @@ fn exactly_what_is_to_be_altered_is() {
         let leg = body.joints_of(Role::LeftUpperLeg)[0];
         assert!(!joints.contains(&arm));
         assert_eq!(joints.contains(&leg), altered == Altered::Unmoved);
-        assert_eq!(hands.iter().all(|j| joints.contains(j)), altered != Altered::Nothing);
+        assert_eq!(
+            hands.iter().all(|j| joints.contains(j)),
+            altered != Altered::Nothing
+        );
         if altered == Altered::Hands {
             assert_eq!(joints.len(), hands.len());
         }
@@ -153,11 +162,32 @@ fn the_three_poolings_of_a_small_example() {
         probable: Some(vec![0.5; 8]),
     };
     let tally = Tally::of(&clip, &decisions, 2).expect("counted");
-    let first = Counts { hits: 1, false_alarms: 0, misses: 1, rejections: 2 };
-    let second = Counts { hits: 0, false_alarms: 3, misses: 0, rejections: 1 };
-    let any = Counts { hits: 2, false_alarms: 1, misses: 0, rejections: 1 };
-    assert_eq!((tally.classes.as_slice(), tally.any), ([first, second].as_slice(), any));
-    assert_eq!((tally.all_right, tally.alarms, tally.spans, tally.missed), (1, 1, 1, 0));
+    let first = Counts {
+        hits: 1,
+        false_alarms: 0,
+        misses: 1,
+        rejections: 2,
+    };
+    let second = Counts {
+        hits: 0,
+        false_alarms: 3,
+        misses: 0,
+        rejections: 1,
+    };
+    let any = Counts {
+        hits: 2,
+        false_alarms: 1,
+        misses: 0,
+        rejections: 1,
+    };
+    assert_eq!(
+        (tally.classes.as_slice(), tally.any),
+        ([first, second].as_slice(), any)
+    );
+    assert_eq!(
+        (tally.all_right, tally.alarms, tally.spans, tally.missed),
+        (1, 1, 1, 0)
+    );
     let row = Row::of("made up", Mode::FILTER, Altered::Nothing, &[tally]).expect("a row");
     for (measure, wanted) in [
         (Measure::Accuracy, Some(0.5)),
@@ -174,7 +204,9 @@ fn the_three_poolings_of_a_small_example() {
         (Measure::LogLoss, Some(2.0_f64.ln())),
     ] {
         let found = row.measure(measure).map(|e| e.value);
-        let near = found.zip(wanted).is_some_and(|(a, b)| (a - b).abs() < 1e-12);
+        let near = found
+            .zip(wanted)
+            .is_some_and(|(a, b)| (a - b).abs() < 1e-12);
         assert!(near, "{measure:?}: {found:?}, not {wanted:?}");
     }
     // One alarm in a second.
@@ -204,10 +236,16 @@ fn intervals_of_counts_are_the_published_ones() {
     // Garwood's table; Wilson of 95 in 100.
     for (count, low, high) in [(0, 0.0, 3.689), (1, 0.025, 5.572), (10, 4.795, 18.390)] {
         let (found_low, found_high) = garwood(count);
-        assert!((found_low - low).abs() < 1e-3 && (found_high - high).abs() < 1e-3, "{count}");
+        assert!(
+            (found_low - low).abs() < 1e-3 && (found_high - high).abs() < 1e-3,
+            "{count}"
+        );
     }
     let (low, high) = wilson(95, 100);
-    assert!((low - 0.8882).abs() < 1e-3 && (high - 0.9785).abs() < 1e-3, "{low} {high}");
+    assert!(
+        (low - 0.8882).abs() < 1e-3 && (high - 0.9785).abs() < 1e-3,
+        "{low} {high}"
+    );
 }
 
 #[test]
@@ -259,14 +297,24 @@ fn the_third_set_is_of_negatives_and_names_what_left() {
     let Some(corpus) = corpus() else { return };
     let captured = recorded(&corpus, boxing().body(), 97).expect("recordings");
     assert!(captured.negatives.len() > 5 && !captured.left.is_empty());
-    assert!(captured.negatives.iter().all(|c| c.truth.iter().all(Option::is_none)));
+    assert!(
+        captured
+            .negatives
+            .iter()
+            .all(|c| c.truth.iter().all(Option::is_none))
+    );
     for word in ["punch", "boxing", "wave"] {
-        assert!(captured.negatives.iter().all(|c| !c.name.contains(word)), "{word}");
+        assert!(
+            captured.negatives.iter().all(|c| !c.name.contains(word)),
+            "{word}"
+        );
     }
     let mode = Mode::Frame { n: 1, stride: 1 };
     let recogniser = mode.over(boxing()).expect("a recogniser");
     let clip = &captured.negatives[0];
-    let decisions = mode.decide(recogniser.as_deref(), 5, &clip.seen).expect("decided");
+    let decisions = mode
+        .decide(recogniser.as_deref(), 5, &clip.seen)
+        .expect("decided");
     assert_eq!(decisions.affirmed.len(), 5 * clip.truth.len());
 }
 
@@ -283,8 +331,15 @@ fn sets_of_primitives_are_answered_by_what_their_primitives_share() {
     assert_eq!(Answer::of("k", Some(1), &split, &sets).set(), Some(1));
     let unknown = posterior([0.0, 0.0, 0.2, 0.1, 0.0, 0.0, 0.0, 0.0], 0.7);
     let answer = Answer::of("k", None, &unknown, &sets);
-    assert_eq!((answer.set(), answer.leading, answer.refused), (None, 1, true));
+    assert_eq!(
+        (answer.set(), answer.leading, answer.refused),
+        (None, 1, true)
+    );
     for set in 0..SETS.len() {
-        assert!(RESEMBLING.iter().any(|(.., truth)| *truth == Some(set)), "{}", SETS[set]);
+        assert!(
+            RESEMBLING.iter().any(|(.., truth)| *truth == Some(set)),
+            "{}",
+            SETS[set]
+        );
     }
 }

@@ -13,7 +13,7 @@ const MARKERS: [&str; 1] = ["c3d.zip"];
 /// The formats of files that hold no motion.
 const NO_MOTION: [&str; 2] = ["asf", "c3d"];
 /// A clip of zeros, as published.
-const ALL_ZERO: &str = "a13_s09_e02";
+pub(crate) const ALL_ZERO: &str = "a13_s09_e02";
 /// The skeleton for recordings of CMU subjects that come without one.
 const ASF: &str = "cmu-asfamc.zip/cmu-asfamc/02/02.asf";
 

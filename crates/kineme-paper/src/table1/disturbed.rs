@@ -56,7 +56,13 @@ pub fn reversed(clip: &Clip) -> Result<Clip> {
     let poses = frames.clone().flat_map(|f| motion.pose(f).to_vec());
     let roots = frames.map(|f| *motion.root(f)).collect();
     let body = Arc::clone(motion.skeleton());
-    let back = Motion::new(motion.name(), body, motion.rate_hz(), poses.collect(), roots)?;
+    let back = Motion::new(
+        motion.name(),
+        body,
+        motion.rate_hz(),
+        poses.collect(),
+        roots,
+    )?;
     Ok(Clip::negative(&clip.name, back))
 }
 

@@ -14,6 +14,7 @@ mod run;
 mod tally;
 mod written;
 
+pub(crate) use captured::ALL_ZERO;
 pub use captured::{Captured, Showing, recorded, shows};
 pub use clip::{Altered, Clip, animations, unmoved};
 pub use disturbed::{HYBRID_APART, cut_out, hybrids, reversed};

@@ -81,10 +81,7 @@ impl Mode {
     ///
     /// # Errors
     /// When a setting is out of its range.
-    pub fn over<'v>(
-        self,
-        vocabulary: &'v Vocabulary,
-    ) -> Result<Option<Box<dyn Recogniser + 'v>>> {
+    pub fn over<'v>(self, vocabulary: &'v Vocabulary) -> Result<Option<Box<dyn Recogniser + 'v>>> {
         let filter = |lag_secs| FilterSettings {
             lag_secs,
             ..FilterSettings::default()

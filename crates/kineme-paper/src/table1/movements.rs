@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use kineme::control::{
-    Aiming, Arbitration, ControlSettings, Controller, Plan, Planned, Place, Robot,
+    Aiming, Arbitration, ControlSettings, Controller, Place, Plan, Planned, Robot,
 };
 use kineme::interaction::{Session, SessionSettings, standing};
 use kineme::primitive::{Course, Observations, Primitive};

@@ -195,7 +195,11 @@ const DAMAGES: [Damage; 7] = [
 ];
 
 /// The names of the three sets.
-const SETS: [&str; 3] = ["Ares movements", "Choreographed animations", "Motion capture"];
+const SETS: [&str; 3] = [
+    "Ares movements",
+    "Choreographed animations",
+    "Motion capture",
+];
 
 /// What decides, and for how many behaviours.
 struct Judge<'v> {
@@ -263,7 +267,11 @@ pub fn table1(settings: &TableSettings, watch: &mut dyn FnMut(&str)) -> Result<T
     ];
     let filled = || sets.iter().filter(|(_, clips, _)| !clips.is_empty());
     let mut table = Table {
-        behaviors: vocabulary.primitives().iter().map(|p| p.name().into()).collect(),
+        behaviors: vocabulary
+            .primitives()
+            .iter()
+            .map(|p| p.name().into())
+            .collect(),
         physics: ready_made(body)?.is_physical(),
         rows: Vec::new(),
         grid: Vec::new(),
@@ -296,17 +304,29 @@ pub fn table1(settings: &TableSettings, watch: &mut dyn FnMut(&str)) -> Result<T
     for mode in grid.clone().map(paper).chain(grid.map(frame)) {
         let judge = Judge::new(mode, &vocabulary)?;
         for (set, clips, altered) in filled() {
-            let every = if *set == SETS[2] { settings.grid_every } else { 1 };
+            let every = if *set == SETS[2] {
+                settings.grid_every
+            } else {
+                1
+            };
             let some: Vec<&Clip> = clips.iter().copied().step_by(every.max(1)).collect();
             watch(&format!("{} {:?}: {set}", mode.name(), mode.postures()));
             table.grid.push(judge.row(set, &some, *altered)?);
         }
     }
-    disturbed(&mut table, &vocabulary, &own, settings.movements.seed, watch)?;
+    disturbed(
+        &mut table,
+        &vocabulary,
+        &own,
+        settings.movements.seed,
+        watch,
+    )?;
     left(&mut table, &vocabulary, &captured, watch)?;
     if settings.timings {
         for mode in FEW {
-            table.timings.push(timing(&Judge::new(mode, &vocabulary)?, &own[0])?);
+            table
+                .timings
+                .push(timing(&Judge::new(mode, &vocabulary)?, &own[0])?);
         }
     }
     Ok(table)
@@ -348,16 +368,24 @@ fn disturbed(
     for (name, clips) in [
         ("movements, cut out", cut),
         ("the same backward", back),
-        ("hybrids: another execution's left arm", hybrids(vocabulary, HYBRIDS, seed)?),
+        (
+            "hybrids: another execution's left arm",
+            hybrids(vocabulary, HYBRIDS, seed)?,
+        ),
     ] {
         watch(name);
         let clips: Vec<&Clip> = clips.iter().collect();
         for judge in &judges {
             let tallies = judge.tallies(&clips, Altered::Nothing)?;
-            let affirmed: u64 = tallies.iter().map(|t| t.any.hits + t.any.false_alarms).sum();
+            let affirmed: u64 = tallies
+                .iter()
+                .map(|t| t.any.hits + t.any.false_alarms)
+                .sum();
             let frames: u64 = tallies.iter().map(|t| t.frames).sum();
             let share = affirmed as f64 / frames as f64;
-            table.impossible.push((name.into(), judge.mode, share, clips.len()));
+            table
+                .impossible
+                .push((name.into(), judge.mode, share, clips.len()));
         }
     }
     Ok(())
@@ -370,7 +398,11 @@ fn left(
     captured: &Captured,
     watch: &mut dyn FnMut(&str),
 ) -> Result<()> {
-    let mut kinds: Vec<&str> = captured.left.iter().map(|(_, kind, _)| kind.as_str()).collect();
+    let mut kinds: Vec<&str> = captured
+        .left
+        .iter()
+        .map(|(_, kind, _)| kind.as_str())
+        .collect();
     kinds.sort_unstable();
     kinds.dedup();
     for mode in FEW {
@@ -382,14 +414,23 @@ fn left(
             let decided = mode.decide(judge.recogniser.as_deref(), classes, &seen.seen)?;
             let least = (AFFIRMED_SECS * clip.motion().rate_hz()).round().max(1.0);
             let long = |k: usize| {
-                let own: Vec<bool> = decided.affirmed.iter().skip(k).step_by(classes).copied().collect();
+                let own: Vec<bool> = decided
+                    .affirmed
+                    .iter()
+                    .skip(k)
+                    .step_by(classes)
+                    .copied()
+                    .collect();
                 own.chunk_by(|a, b| a == b)
                     .any(|run| run[0] && run.len() as f64 >= least)
             };
             Ok((kind.clone(), (0..classes).any(long)))
         };
-        let answers: Vec<(String, bool)> =
-            captured.left.par_iter().map(affirmed).collect::<Result<_>>()?;
+        let answers: Vec<(String, bool)> = captured
+            .left
+            .par_iter()
+            .map(affirmed)
+            .collect::<Result<_>>()?;
         for kind in &kinds {
             let own = || answers.iter().filter(|(k, _)| k == kind);
             let yes = own().filter(|(_, yes)| *yes).count();

@@ -93,7 +93,8 @@ impl Table {
             self.behaviors.join(", "),
             match self.physics {
                 true => "was simulated",
-                false => "was not simulated: built without physics, its joints were where they were told to be",
+                false =>
+                    "was not simulated: built without physics, its joints were where they were told to be",
             }
         )?;
         let mut frames = 0;
@@ -102,7 +103,9 @@ impl Table {
                 continue;
             };
             frames += row.frames;
-            let shown = row.measure(Measure::NeverAny).map_or(0.0, |e| 1.0 - e.value);
+            let shown = row
+                .measure(Measure::NeverAny)
+                .map_or(0.0, |e| 1.0 - e.value);
             writeln!(
                 out,
                 "| {set} | {} | {} | {:.2} | {:.1} % | {one} % | {two} % |",
@@ -112,7 +115,10 @@ impl Table {
                 100.0 * shown
             )?;
         }
-        writeln!(out, "\n{frames} frames in all; the paper had 209,188 data points.")?;
+        writeln!(
+            out,
+            "\n{frames} frames in all; the paper had 209,188 data points."
+        )?;
         Ok(())
     }
 
@@ -132,14 +138,32 @@ impl Table {
             };
             let value = |m| row.measure(m).map_or(f64::NAN, |e| 100.0 * e.value);
             let found = value(Measure::Accuracy);
-            asked(set, "accuracy, %, at least", accuracy, found, found >= accuracy)?;
+            asked(
+                set,
+                "accuracy, %, at least",
+                accuracy,
+                found,
+                found >= accuracy,
+            )?;
             if set == ASKED[0].0 {
                 let found = value(Measure::Recall);
-                asked(set, "recall, %, at least", ASKED_RECALL, found, found >= ASKED_RECALL)?;
+                asked(
+                    set,
+                    "recall, %, at least",
+                    ASKED_RECALL,
+                    found,
+                    found >= ASKED_RECALL,
+                )?;
             }
             if set == ASKED[2].0 {
                 let [found, ..] = row.alarms_an_hour();
-                asked(set, "alarms an hour, at most", ASKED_ALARMS, found, found <= ASKED_ALARMS)?;
+                asked(
+                    set,
+                    "alarms an hour, at most",
+                    ASKED_ALARMS,
+                    found,
+                    found <= ASKED_ALARMS,
+                )?;
             }
         }
         Ok(())
@@ -214,7 +238,12 @@ impl Table {
              the first rows, and low in those after them.\n\n| | clips | way | affirmed |\n| --- | --- | --- | --- |"
         )?;
         for (name, mode, share, clips) in &self.impossible {
-            writeln!(out, "| {name} | {clips} | {} | {:.1} % |", way(*mode), 100.0 * share)?;
+            writeln!(
+                out,
+                "| {name} | {clips} | {} | {:.1} % |",
+                way(*mode),
+                100.0 * share
+            )?;
         }
         if self.left.is_empty() {
             return Ok(());
@@ -252,7 +281,12 @@ impl Table {
                 found.map_or((0, 0), |(_, _, yes, all)| (*yes, *all))
             };
             let cells: Vec<String> = ways.iter().map(|m| of(m).0.to_string()).collect();
-            writeln!(out, "| {kind} | {} | {} |", of(&ways[0]).1, cells.join(" | "))?;
+            writeln!(
+                out,
+                "| {kind} | {} | {} |",
+                of(&ways[0]).1,
+                cells.join(" | ")
+            )?;
         }
         Ok(())
     }
@@ -285,8 +319,21 @@ impl Table {
     pub fn csv(&self) -> Result<String> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let mut head: Vec<String> = [
-            "part", "set", "mode", "n", "stride", "altered", "clips", "frames", "hours", "alarms",
-            "alarms_an_hour", "alarms_low", "alarms_high", "movements", "missed",
+            "part",
+            "set",
+            "mode",
+            "n",
+            "stride",
+            "altered",
+            "clips",
+            "frames",
+            "hours",
+            "alarms",
+            "alarms_an_hour",
+            "alarms_low",
+            "alarms_high",
+            "movements",
+            "missed",
         ]
         .map(String::from)
         .to_vec();
@@ -295,8 +342,14 @@ impl Table {
         }
         writer.write_record(&head)?;
         let damaged = self.damaged.iter().map(|(name, row)| (name.as_str(), row));
-        let parts = [("table", &self.rows), ("altered", &self.altered), ("grid", &self.grid)];
-        let parts = parts.iter().flat_map(|(p, rows)| rows.iter().map(move |r| (*p, r)));
+        let parts = [
+            ("table", &self.rows),
+            ("altered", &self.altered),
+            ("grid", &self.grid),
+        ];
+        let parts = parts
+            .iter()
+            .flat_map(|(p, rows)| rows.iter().map(move |r| (*p, r)));
         for (part, row) in parts.chain(damaged) {
             let (n, stride) = row.mode.postures().unzip();
             let count = |v: Option<usize>| v.map_or(String::new(), |v| v.to_string());
