@@ -79,9 +79,7 @@ pub fn relaxation(vocabulary: &Vocabulary) -> Result<Relaxation> {
     let inside = |phase: f64| intervals.iter().any(|i| i[0] <= phase && phase <= i[1]);
     let slices = mixtures[1].phases.iter().zip(&mixtures[1].samples);
     let samples = slices.filter(|(phase, _)| inside(**phase));
-    let samples = samples
-        .flat_map(|(_, slice)| slice.iter().copied())
-        .collect();
+    let samples = samples.flat_map(|(_, slice)| slice.iter().copied()).collect();
     let all = frame.explaining(k, &[], &[])?;
     let mut rows: Vec<Vec<f64>> = all.iter().map(|p| p.parameters.clone()).collect();
     rows.dedup();
@@ -104,22 +102,13 @@ pub fn relaxation(vocabulary: &Vocabulary) -> Result<Relaxation> {
             exemplars(&paper, primitive, sought)?,
         ],
         names: [OBSERVED, SOUGHT].map(str::to_string),
-        parameters: primitive
-            .parameters()
-            .axes()
-            .iter()
-            .map(|x| x.name.clone())
-            .collect(),
+        parameters: primitive.parameters().axes().iter().map(|x| x.name.clone()).collect(),
         rows,
     })
 }
 
 /// A coordinate of each exemplar over phase.
-fn exemplars(
-    paper: &Paper,
-    primitive: &Primitive,
-    coordinate: usize,
-) -> Result<Vec<Vec<[f64; 2]>>> {
+fn exemplars(paper: &Paper, primitive: &Primitive, coordinate: usize) -> Result<Vec<Vec<[f64; 2]>>> {
     const POSTURES: usize = 65;
     let line = |i: usize| {
         let course: Course = primitive.at(primitive.point(i))?;
@@ -176,12 +165,7 @@ impl Relaxation {
         let ends = m.low.iter().zip(&m.high);
         paper::Mixture {
             joint: format!("{} (rad)", self.names[which]),
-            envelope: m
-                .phases
-                .iter()
-                .zip(ends)
-                .map(|(t, (l, h))| [*t, *l, *h])
-                .collect(),
+            envelope: m.phases.iter().zip(ends).map(|(t, (l, h))| [*t, *l, *h]).collect(),
             exemplars: self.exemplars[which].clone(),
             intervals: self.intervals.clone(),
             ..paper::Mixture::default()
@@ -279,11 +263,7 @@ impl Relaxation {
         let own = |p: &Patch| {
             let [low, high] = p.bounds[0];
             let (low, high) = (low - delta, high + delta);
-            if (low..=high).contains(&x) {
-                1.0 / (high - low)
-            } else {
-                0.0
-            }
+            if (low..=high).contains(&x) { 1.0 / (high - low) } else { 0.0 }
         };
         self.exact.iter().map(own).sum::<f64>() / self.exact.len().max(1) as f64
     }
@@ -291,11 +271,7 @@ impl Relaxation {
 
 fn shown(intervals: &[[f64; 2]]) -> String {
     let one = |i: &[f64; 2]| format!("[{:.2}, {:.2}]", i[0], i[1]);
-    intervals
-        .iter()
-        .map(one)
-        .collect::<Vec<_>>()
-        .join(" \u{222a} ")
+    intervals.iter().map(one).collect::<Vec<_>>().join(" \u{222a} ")
 }
 
 /// The bandwidth of Silverman (1986, equation 3.31): 0.9 min(deviation, quartiles' distance / 1.34) n^(-1/5).

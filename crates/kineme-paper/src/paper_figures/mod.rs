@@ -39,22 +39,10 @@ pub const NAMES: [&str; 7] = [
 
 /// The sets of primitives of section V-C: three that it names, and the waving of Figure 2.
 const SETS: [(&str, &str); 4] = [
-    (
-        "vertical-waving.toml",
-        include_str!("../../../../choreography/vertical-waving.toml"),
-    ),
-    (
-        "punching.toml",
-        include_str!("../../../../choreography/punching.toml"),
-    ),
-    (
-        "twist.toml",
-        include_str!("../../../../choreography/twist.toml"),
-    ),
-    (
-        "horizontal-waving.toml",
-        include_str!("../../../../choreography/horizontal-waving.toml"),
-    ),
+    ("vertical-waving.toml", include_str!("../../../../choreography/vertical-waving.toml")),
+    ("punching.toml", include_str!("../../../../choreography/punching.toml")),
+    ("twist.toml", include_str!("../../../../choreography/twist.toml")),
+    ("horizontal-waving.toml", include_str!("../../../../choreography/horizontal-waving.toml")),
 ];
 
 /// The kinds of file of each figure; without the feature `png` there is SVG alone.
@@ -65,12 +53,7 @@ const KINDS: &[&str] = match cfg!(feature = "png") {
 
 /// The names of the files that [`write`] writes.
 pub fn files() -> Vec<String> {
-    let both = |name: &&str| {
-        KINDS
-            .iter()
-            .map(move |kind| format!("{name}.{kind}"))
-            .collect::<Vec<_>>()
-    };
+    let both = |name: &&str| KINDS.iter().map(move |kind| format!("{name}.{kind}")).collect::<Vec<_>>();
     NAMES.iter().flat_map(both).collect()
 }
 
@@ -148,12 +131,7 @@ pub(crate) fn vocabulary(names: &[&str], body: &Arc<Skeleton>) -> Result<Vocabul
         .collect::<Result<_>>()?;
     let primitives: Vec<_> = sets.iter().flat_map(|v| v.primitives().to_vec()).collect();
     let none = Transitions::none(primitives.len());
-    Ok(Vocabulary::new(
-        Arc::clone(body),
-        primitives,
-        Vec::new(),
-        none,
-    )?)
+    Ok(Vocabulary::new(Arc::clone(body), primitives, Vec::new(), none)?)
 }
 
 /// The names of all sets.
