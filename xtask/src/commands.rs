@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::{setup, tidy};
+use crate::{setup, tidy, viewer};
 
 /// Result of a command: the message of a failure is all that a caller prints.
 pub type Outcome = Result<(), String>;
@@ -46,6 +46,13 @@ pub fn test(root: &Path, quick: bool) -> Outcome {
         }
         Ok(())
     });
+    let built = step("viewer", &|| match viewer::build(root) {
+        Err(message) if message.starts_with("node ") => {
+            println!("SKIPPED: {message}");
+            Ok(())
+        }
+        done => done,
+    });
     let scope = if engine { WITH_ENGINE } else { WITHOUT_ENGINE };
     let all = |command: &[&'static str], rest: &[&'static str]| [command, scope, rest].concat();
     step("format", &|| cargo(root, &["fmt", "--all", "--check"], &[]));
@@ -66,6 +73,9 @@ pub fn test(root: &Path, quick: bool) -> Outcome {
             cargo(root, &all(&["doc"], &["--no-deps", "--lib"]), &denied)
         });
     }
+    if built {
+        step("page in a browser", &|| viewer::test(root));
+    }
     let took = seconds(begun.elapsed());
     if failed.is_empty() {
         println!("passed: {count} steps in {took}");
@@ -80,6 +90,9 @@ pub fn test(root: &Path, quick: bool) -> Outcome {
 
 /// `kineme demo` with these arguments, in release; without physics where the engine cannot be had.
 pub fn demo(root: &Path, arguments: &[&str]) -> Outcome {
+    if let Err(message) = viewer::build(root) {
+        eprintln!("{message}");
+    }
     let mut line = vec!["run", "--release", "--package", "kineme-cli"];
     match setup::engine(root) {
         Ok(()) => line.extend(["--features", "sim"]),

@@ -3,6 +3,7 @@
 mod commands;
 mod setup;
 mod tidy;
+mod viewer;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -10,11 +11,14 @@ use std::process::ExitCode;
 const HELP: &str = "\
 cargo xtask COMMAND: what those who work on kineme run
 
-  test [--quick]             all that CI asks: setup, formatting, tidy, clippy with warnings denied,
-                             tests and doc-tests, documentation with warnings denied.
+  test [--quick]             all that CI asks: setup, viewer, formatting, tidy, clippy with warnings denied,
+                             tests and doc-tests, documentation with warnings denied, the page in a browser.
                              --quick leaves out doc-tests and documentation
   setup [--robots]           fetch what physics needs, once: the engine into .mujoco/lib, and with --robots the humanoid
                              Unitree G1 into .mujoco/robots; wants python3 with pip. `test` and `demo` do it themselves
+  viewer                     build the program of the page, so that the next build of kineme carries it; wants node.
+                             `test` and `demo` do it themselves where node is
+  screenshot                 the picture in the README, taken of the demo's page; wants node and Chromium
   tidy                       only the rules that rustc and clippy do not know: floors between rooms
                              (the table in ARCHITECTURE.md), length of files, paths named in documents,
                              the code map, the CHANGELOG's heading, paths of somebody's machine
@@ -39,6 +43,8 @@ fn main() -> ExitCode {
         ["test", "--quick"] => commands::test(&root(), true),
         ["setup"] => setup::run(&root(), false),
         ["setup", "--robots"] => setup::run(&root(), true),
+        ["viewer"] => viewer::build(&root()),
+        ["screenshot"] => viewer::screenshot(&root()),
         ["tidy"] => tidy::run(&root()),
         ["demo", "--", rest @ ..] | ["demo", rest @ ..] => commands::demo(&root(), rest),
         ["repro"] => commands::repro(&root(), None),

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use kineme_paper::demo::{self, Demo, VOCABULARY};
+use kineme_paper::show::PLANS;
 
 use crate::args::{DemoArgs, Global};
 use crate::failure::{Failure, print};
@@ -31,18 +32,60 @@ pub fn run(args: &DemoArgs, global: &Global) -> Result<u8, Failure> {
         return Ok(0);
     }
     let text = format!(
-        "A choreographed session of {} recordings, {} movements in {} strokes, that recur in varied order, size and \
-         speed.\nWhat was found in it without being told:\n\n{}\n{}\nwritten:    {}\nto look at: {}\n",
+        "{}\nA choreographed session of {} recordings, {} movements in {} strokes, that recur in varied order, size and \
+         speed.\nWhat was found in it without being told:\n\n{}\n{}\nwritten:    {}\nto look at: {}\ntry next:   kineme control {} {} --body adonis\n",
+        shown(&found),
         found.motions.len(),
         found.movements.kinds,
         found.strokes.kinds,
         findings.text(),
         judged(&found),
         args.out.join(VOCABULARY).display(),
-        page.display()
+        page.display(),
+        args.out.join(demo::MOVEMENTS_KNOWN).display(),
+        args.out.join(PLANS[0].0).display()
     );
     print(text.as_bytes())?;
     Ok(0)
+}
+
+/// What bodies did with written primitives, and what was seen of it.
+fn shown(found: &Demo) -> String {
+    let show = &found.show;
+    let moved = show.routine.iter().map(|performance| {
+        let body = performance.done.skeleton();
+        let how = match show.physics {
+            true => format!(
+                "in physics, within {:.2} degrees of what it was told",
+                performance.tracking.rms_rad.to_degrees()
+            ),
+            false => "without physics".into(),
+        };
+        format!(
+            "  {} ({} degrees of freedom): a routine of {:.0} s, {how}\n",
+            body.name(),
+            body.dof(),
+            performance.done.duration_secs()
+        )
+    });
+    let answered = show.bout.ran.iter().map(|ran| ran.start_secs);
+    let attacks = &show.attacker.attacks;
+    let answers: Vec<String> = attacks
+        .iter()
+        .map(|attack| {
+            let span = attack.start_secs..attack.end_secs;
+            match answered.clone().find(|at| span.contains(at)) {
+                Some(at) => format!("{} after {:.2} s", attack.primitive, at - attack.start_secs),
+                None => format!("{} missed", attack.primitive),
+            }
+        })
+        .collect();
+    format!(
+        "{} primitives of written exemplars move two bodies and recognise what they do:\n\n{}  sparring: adonis answers {}\n",
+        show.movements.primitives().len(),
+        moved.collect::<String>(),
+        answers.join(", ")
+    )
 }
 
 /// What was found beside what was choreographed.

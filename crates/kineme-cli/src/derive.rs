@@ -113,7 +113,8 @@ pub fn run(args: &DeriveArgs, global: &Global) -> Result<u8, Failure> {
             derived.groups.len(),
             motions.len()
         );
-        Report::of(&derived, &motions, &title, &summary(&derived, &motions))
+        let summary = summary(&derived, &motions);
+        Report::of(&derived, &motions, &vocabulary, None, (&title, &summary))?
             .write(folder, existing(global))
             .map_err(unwritten)?;
     }

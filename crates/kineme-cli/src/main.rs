@@ -28,6 +28,7 @@ mod show;
 mod source;
 mod synthesize;
 mod table;
+mod view;
 mod vocabularies;
 mod warnings;
 
@@ -82,6 +83,7 @@ fn run(cli: &Cli) -> Result<u8, Failure> {
         Command::Classify(args) => classify::run(args, &cli.global),
         Command::Control(args) => control::run(args, &cli.global),
         Command::Encode(args) => encode::run(args, &cli.global),
+        Command::View(args) => view::run(args, &cli.global),
         Command::Demo(args) => demo::run(args, &cli.global),
         Command::Reproduce(args) => reproduce::run(args, &cli.global),
     }

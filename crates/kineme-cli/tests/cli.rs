@@ -73,7 +73,7 @@ fn exit_codes_say_what_went_wrong_and_hints_what_to_do() {
 }
 
 #[test]
-fn help_teaches_this_versions_verbs_and_no_others() {
+fn help_of_every_verb_has_examples() {
     let folder = folder();
     for arguments in [
         &["--help"][..],
@@ -87,13 +87,12 @@ fn help_teaches_this_versions_verbs_and_no_others() {
         &["classify", "--help"],
         &["encode", "--help"],
         &["evaluate", "--help"],
+        &["control", "--help"],
+        &["view", "--help"],
         &["reproduce", "--help"],
     ] {
         let help = kineme(folder.path(), arguments).out;
         assert!(help.contains("Examples:"), "{arguments:?}");
-        for later in ["kineme control", "kineme view"] {
-            assert!(!help.contains(later), "{arguments:?} mentions {later}");
-        }
     }
 }
 

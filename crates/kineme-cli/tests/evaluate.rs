@@ -141,8 +141,13 @@ fn classifiers_are_judged_like_the_baselines_and_reject() {
         paper["ece"].is_null() && paper["log_loss"].is_null(),
         "{binary}: {paper}"
     );
-    let table = done(at, "evaluate p.kineme m/test.csv --methods frame");
+    let table = done(at, "evaluate p.kineme m/test.csv --methods frame,encode");
     assert!(!table.out.contains("always names"), "{}", table.out);
+    assert!(
+        table.out.contains("Answers of frame") && table.out.contains("encode"),
+        "{}",
+        table.out
+    );
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Prints the tables of `docs/perception.md`: `recognition_table CORPUS`.
 //!
 //! `recognition_table CORPUS --export FOLDER` writes clips and splits for `peers/minirocket.py` instead;
-//! `recognition_table CORPUS --latency` tells how long a frame takes on this machine.
+//! `recognition_table CORPUS --latency` tells how long a frame takes on this machine; `recognition_table CORPUS --only
+//! WORD` makes the stages with that word in their name alone, such as `HDM05` or `streams`.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -23,7 +24,8 @@ fn main() -> ExitCode {
     let rest: Vec<_> = arguments.collect();
     let words: Vec<&str> = rest.iter().filter_map(|a| a.to_str()).collect();
     let done = match words.as_slice() {
-        [] => tables(&corpus),
+        [] => tables(&corpus, None),
+        ["--only", word] => tables(&corpus, Some(word)),
         ["--export", folder] => export(&corpus, Path::new(folder)),
         ["--latency"] => latency(&corpus),
         _ => return usage(),
@@ -39,15 +41,15 @@ fn main() -> ExitCode {
 
 fn usage() -> ExitCode {
     eprintln!(
-        "usage: recognition_table CORPUS [--export FOLDER | --latency] (a folder with index.csv and its archives)"
+        "usage: recognition_table CORPUS [--only WORD | --export FOLDER | --latency] (a folder with index.csv and its archives)"
     );
     ExitCode::from(2)
 }
 
-fn tables(corpus: &Path) -> Result<()> {
+fn tables(corpus: &Path, only: Option<&str>) -> Result<()> {
     let begun = Instant::now();
     let mut watch = |stage: &str| eprintln!("{:6.1} s {stage} ...", begun.elapsed().as_secs_f64());
-    print!("{}", perception_tables(corpus, &mut watch)?);
+    print!("{}", perception_tables(corpus, only, &mut watch)?);
     watch("done");
     Ok(())
 }

@@ -14,10 +14,12 @@ use kineme::perception::calibrated;
 use kineme::segmentation::Segmenter;
 use kineme::{Motion, Vocabulary, body};
 use kineme_formats::output::{self, Existing};
+use kineme_formats::tables::body_angles;
 use kineme_formats::{FormatError, Place, script, vocabulary};
 
 use crate::figures::{Report, summary};
 use crate::sets::Result;
+use crate::show::{Act, PLANS, Show, show};
 
 const SESSION: &str = include_str!("../../../choreography/session.toml");
 const SESSION_FILE: &str = "choreography/session.toml";
@@ -26,6 +28,12 @@ const MOVEMENTS_FILE: &str = "choreography/session-movements.csv";
 
 /// The vocabulary among the files of the demo.
 pub const VOCABULARY: &str = "session.kineme";
+
+/// The written vocabularies among them, all movements and boxing alone, and who is sparred with.
+pub const MOVEMENTS_KNOWN: &str = "movements.kineme";
+/// See [`MOVEMENTS_KNOWN`].
+pub const BOXING: &str = "boxing.kineme";
+const ATTACKER: &str = "attacker.csv";
 
 /// Frames a second at which the session is performed.
 const RATE_HZ: f64 = 60.0;
@@ -45,6 +53,27 @@ pub struct Demo {
     pub movements: Match,
     /// For each group the stroke that most of its segments are, with how many.
     pub names: Vec<(String, usize)>,
+    /// What bodies did with written primitives.
+    pub show: Show,
+}
+
+/// What the demo is at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    /// Deriving.
+    Deriving(Stage),
+    /// The show.
+    Showing(Act),
+}
+
+impl Step {
+    /// As a line of progress says it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Step::Deriving(stage) => stage.name(),
+            Step::Showing(act) => act.name(),
+        }
+    }
 }
 
 /// How well what was found matches what was choreographed.
@@ -68,11 +97,11 @@ struct Stroke {
     stroke: String,
 }
 
-/// Performs the session and derives its vocabulary; `watch` hears of every stage as it begins.
+/// Performs the session, derives its vocabulary, and puts the show on; `watch` hears of every step as it begins.
 ///
 /// # Errors
 /// When the embedded session is not sound, or a step of the derivation fails.
-pub fn run(seed: u64, watch: &mut dyn FnMut(Stage)) -> Result<Demo> {
+pub fn run(seed: u64, watch: &mut dyn FnMut(Step)) -> Result<Demo> {
     let motions = session()?;
     let truth = strokes()?;
     let mut settings = Derivation::new(Cut::Segmenter {
@@ -80,7 +109,7 @@ pub fn run(seed: u64, watch: &mut dyn FnMut(Stage)) -> Result<Demo> {
         target_secs: None,
     });
     settings.seed = seed;
-    let derived = settings.run(&motions, watch)?;
+    let derived = settings.run(&motions, &mut |stage| watch(Step::Deriving(stage)))?;
     let vocabulary = derived.vocabulary(&motions, &kineme::Modelling::default(), &|_| None)?;
     let vocabulary = calibrated(vocabulary, None)?;
 
@@ -104,6 +133,7 @@ pub fn run(seed: u64, watch: &mut dyn FnMut(Stage)) -> Result<Demo> {
         strokes: matched(&derived.labels, &strokes),
         movements: matched(&behaviors, &movements),
         names: most_frequent(&derived.labels, &strokes),
+        show: show(seed, &mut |act| watch(Step::Showing(act)))?,
         motions,
         derived,
         vocabulary,
@@ -118,7 +148,23 @@ impl Demo {
     pub fn write(&self, folder: &Path, existing: Existing) -> kineme_formats::Result<PathBuf> {
         let bytes = vocabulary::write(&self.vocabulary, VOCABULARY)?;
         output::write_bytes(&folder.join(VOCABULARY), existing, &bytes)?;
+        for (file, made) in [
+            (MOVEMENTS_KNOWN, &self.show.movements),
+            (BOXING, &self.show.boxing),
+        ] {
+            let bytes = vocabulary::write(made, file)?;
+            output::write_bytes(&folder.join(file), existing, &bytes)?;
+        }
+        for (file, text) in PLANS {
+            output::write_bytes(&folder.join(file), existing, text.as_bytes())?;
+        }
+        let seen = self.show.attacker.seen.motion();
+        let bytes = body_angles::table(seen).write(ATTACKER)?;
+        output::write_bytes(&folder.join(ATTACKER), existing, &bytes)?;
         let mut paragraphs = vec![
+            "Written exemplars became primitives; by these, two bodies performed a routine and one of them sparred, and \
+             what was seen was read back by the same primitives. Sliders below ask them for movements that nobody wrote."
+                .to_string(),
             "A choreographed session of eight movements was cut into segments, and segments that are alike were \
              grouped. Nobody told the procedure what the movements are."
                 .to_string(),
@@ -132,13 +178,29 @@ impl Demo {
             100.0 * self.movements.purity,
             self.movements.ari
         ));
-        let title = "The movements of a session, found";
-        Report::of(&self.derived, &self.motions, title, &paragraphs).write(folder, existing)
+        let title = "One vocabulary, two directions";
+        let report = Report::of(
+            &self.derived,
+            &self.motions,
+            &self.vocabulary,
+            Some(&self.show),
+            (title, &paragraphs),
+        );
+        let refused = |e: kineme::Error| {
+            FormatError::new(
+                VOCABULARY,
+                Place::File,
+                e.to_string(),
+                "a vocabulary to show",
+            )
+        };
+        report.map_err(refused)?.write(folder, existing)
     }
 
     /// The names of the files that [`Self::write`] writes.
     pub fn files() -> Vec<&'static str> {
-        let mut names = vec![VOCABULARY];
+        let mut names = vec![VOCABULARY, MOVEMENTS_KNOWN, BOXING, ATTACKER];
+        names.extend(PLANS.map(|(file, _)| file));
         names.extend(Report::names());
         names
     }

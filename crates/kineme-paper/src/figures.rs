@@ -2,12 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use kineme::Motion;
 use kineme::derivation::{Derived, Group};
 use kineme::skeleton::Skeleton;
+use kineme::{Motion, Vocabulary};
 use kineme_formats::output::{self, Existing};
-use kineme_report::{Figure, GroupPaths, Row, Span};
+use kineme_report::scene::Scene;
+use kineme_report::{Figure, GroupPaths, Page, Row, Span};
 use rayon::prelude::*;
+
+use crate::scene::{CardBudget, Shape, Shown, cards, take_of_derived, takes_of_show};
+use crate::show::Show;
 
 /// The page among the files of a report.
 pub const PAGE: &str = "index.html";
@@ -20,13 +24,30 @@ pub struct Report {
 }
 
 impl Report {
-    /// The figures of what was derived from `motions`, on a page with this title and these paragraphs.
-    pub fn of(derived: &Derived, motions: &[Motion], title: &str, summary: &[String]) -> Self {
+    /// What was derived from `motions` and the vocabulary made of it, moving and as figures, on a page with this title
+    /// and these paragraphs; before it a show, where there is one.
+    ///
+    /// # Errors
+    /// When a primitive refuses its own parameters.
+    pub fn of(
+        derived: &Derived,
+        motions: &[Motion],
+        vocabulary: &Vocabulary,
+        show: Option<&Show>,
+        (title, summary): (&str, &[String]),
+    ) -> kineme::Result<Self> {
         let figures = figures(derived, motions);
-        let page = kineme_report::page(title, summary, &figures.clone().map(|(_, f)| f));
-        let mut files = vec![(PAGE, page)];
+        let (scene, notes) = scene(derived, motions, vocabulary, show)?;
+        let page = Page {
+            title: title.into(),
+            summary: [summary, &notes].concat(),
+            scene,
+            tables: Vec::new(),
+            figures: figures.iter().map(|(_, f)| f.clone()).collect(),
+        };
+        let mut files = vec![(PAGE, page.html())];
         files.extend(figures.map(|(name, figure)| (name, figure.svg)));
-        Self { files }
+        Ok(Self { files })
     }
 
     /// The names of the files that every report has.
@@ -51,6 +72,54 @@ impl Report {
         }
         Ok(folder.join(PAGE))
     }
+}
+
+/// Bytes of page for the motions that were cut.
+const TAKES_BYTES: usize = 3_500_000;
+
+/// The motions with their groups over time, the groups as primitives, and what had to be left out.
+fn scene(
+    derived: &Derived,
+    motions: &[Motion],
+    vocabulary: &Vocabulary,
+    show: Option<&Show>,
+) -> kineme::Result<(Scene, Vec<String>)> {
+    let mut scene = Scene::default();
+    let mut budget = CardBudget::default();
+    if let Some(show) = show {
+        budget.bytes /= 2;
+        scene.takes = takes_of_show(&mut scene, show);
+        scene.primitives = cards(&mut scene, &show.movements, &budget)?.0;
+    }
+    let points = Shape::of(vocabulary.body()).body.points;
+    let sizes: Vec<(f64, usize)> = motions
+        .iter()
+        .map(|m| (m.duration_secs(), points))
+        .collect();
+    let shown = Shown::within(TAKES_BYTES, &sizes);
+    for i in 0..shown.takes {
+        let take = take_of_derived(&mut scene, derived, motions, i, shown.rate_hz);
+        scene.takes.push(take);
+    }
+    let (found, left_out) = cards(&mut scene, vocabulary, &budget)?;
+    scene.primitives.extend(found);
+    let mut notes = Vec::new();
+    if shown.takes < motions.len() {
+        notes.push(format!(
+            "To keep this page small, the first {} of {} motions play on it, {} frames a second of each.",
+            shown.takes,
+            motions.len(),
+            shown.rate_hz
+        ));
+    }
+    if left_out > 0 {
+        notes.push(format!(
+            "The first {} of {} primitives are shown moving.",
+            vocabulary.primitives().len() - left_out,
+            vocabulary.primitives().len()
+        ));
+    }
+    Ok((scene, notes))
 }
 
 /// The five figures in the order of the page, each with its file's name.

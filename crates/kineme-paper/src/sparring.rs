@@ -14,6 +14,7 @@ use kineme::motion::landmark_dims;
 use kineme::perception::{Filter, FilterSettings, calibrated};
 use kineme::primitive::{Observations, Recogniser, Transitions};
 use kineme::{Motion, Root, Skeleton, Vocabulary};
+use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -66,8 +67,8 @@ pub struct Sparring {
     pub seconds: f64,
 }
 
-/// An attacker who does so many of these primitives, drawn with their parameters, from a posture and back to it, with
-/// pauses between.
+/// An attacker who does so many of these primitives, each as often as the others, drawn with their parameters, from a
+/// posture and back to it, with pauses between.
 ///
 /// # Errors
 /// When the vocabulary has no such primitive.
@@ -100,13 +101,19 @@ pub fn attacker(
         roots.push(command.root);
         roots.len() as f64 / SEEN_HZ
     };
-    let mut done = Vec::new();
+    let (mut done, mut deck) = (Vec::new(), Vec::new());
     for _ in 0..attacks {
         let mut now = 0.0;
         for _ in 0..pause(&mut random) {
             now = tick(&mut synthesizer);
         }
-        let name = primitives[random.random_range(0..primitives.len())];
+        if deck.is_empty() {
+            deck = primitives.to_vec();
+            deck.shuffle(&mut random);
+        }
+        let Some(name) = deck.pop() else {
+            break;
+        };
         let primitive = vocabulary.primitive(name)?;
         let p: Vec<f64> = primitive.middle().iter().map(|_| random.random()).collect();
         synthesizer.start(Arc::new(primitive.at(&p)?), &Manner::default())?;

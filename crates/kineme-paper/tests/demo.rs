@@ -1,14 +1,51 @@
 //! The demo: its session is sound, and the derivation finds what was choreographed.
 
+use std::sync::LazyLock;
+
 use kineme_formats::output::Existing;
-use kineme_paper::demo::{Demo, run};
+use kineme_paper::demo::{Demo, Step, run};
 use kineme_paper::figures::PAGE;
+
+static MADE: LazyLock<(Demo, Vec<Step>)> = LazyLock::new(|| {
+    let mut steps = Vec::new();
+    let demo = run(0, &mut |step| steps.push(step)).expect("a demo");
+    (demo, steps)
+});
+
+#[test]
+fn bodies_do_the_routine_and_what_they_do_is_recognised() {
+    let (demo, steps) = &*MADE;
+    assert_eq!(steps.len(), 8, "four stages, four acts");
+    let show = &demo.show;
+    assert_eq!(show.physics, cfg!(feature = "sim"));
+    for performance in &show.routine {
+        let done = performance.ran.iter().filter(|ran| ran.completed).count();
+        assert_eq!(done, 9, "{:?}", performance.ran);
+        assert!(performance.tracking.rms_rad.to_degrees() < 2.0);
+    }
+    // Every attack is answered, while it lasts.
+    assert_eq!(show.attacker.attacks.len(), 4);
+    for attack in &show.attacker.attacks {
+        let span = attack.start_secs..attack.end_secs;
+        let answers = show
+            .bout
+            .ran
+            .iter()
+            .filter(|ran| span.contains(&ran.start_secs));
+        assert!(answers.count() >= 1, "{attack:?}: {:?}", show.bout.ran);
+    }
+    assert_eq!(show.readings.len(), show.routine[1].done.frames());
+    assert!(
+        show.encoding
+            .spans
+            .iter()
+            .any(|span| span.primitive.is_some())
+    );
+}
 
 #[test]
 fn the_choreographed_movements_are_found() {
-    let mut stages = Vec::new();
-    let demo = run(0, &mut |stage| stages.push(stage)).expect("a demo");
-    assert_eq!(stages.len(), 4);
+    let (demo, _) = &*MADE;
     assert_eq!((demo.motions.len(), demo.movements.kinds), (4, 8));
     for motion in &demo.motions {
         let secs = motion.duration_secs();
@@ -43,8 +80,8 @@ fn the_choreographed_movements_are_found() {
 fn the_demo_writes_the_same_bytes_each_time() {
     let folder = tempfile::tempdir().expect("a folder");
     let places = ["a", "b"].map(|name| folder.path().join(name));
-    for place in &places {
-        let demo = run(0, &mut |_| {}).expect("a demo");
+    let again = run(0, &mut |_| {}).expect("a demo");
+    for (place, demo) in places.iter().zip([&MADE.0, &again]) {
         let page = demo.write(place, Existing::Keep).expect("written");
         assert_eq!(page, place.join(PAGE));
         assert!(demo.write(place, Existing::Keep).is_err(), "kept");

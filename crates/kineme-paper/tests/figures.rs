@@ -23,8 +23,12 @@ fn says(svg: &str, words: &str) -> usize {
             assert!(!value.contains("NaN") && !value.contains("inf"), "{value}");
         }
     }
-    let texts = document.descendants().filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "text")));
-    texts.filter(|n| n.text().is_some_and(|t| t.contains(words))).count()
+    let texts = document
+        .descendants()
+        .filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "text")));
+    texts
+        .filter(|n| n.text().is_some_and(|t| t.contains(words)))
+        .count()
 }
 
 fn demo() -> &'static Demo {
@@ -66,8 +70,13 @@ fn figure_2_flows_from_right_to_left_along_its_exemplars() {
     let vocabulary = script
         .vocabulary(&ares, &kineme::Modelling::default(), ("waving", None))
         .expect("a vocabulary");
-    let view = field_view(vocabulary.primitive("wave-across").expect("a primitive")).expect("a field");
-    assert!(view.shares[0] > view.shares[1] && view.shares[0] + view.shares[1] > 0.7, "{:?}", view.shares);
+    let view =
+        field_view(vocabulary.primitive("wave-across").expect("a primitive")).expect("a field");
+    assert!(
+        view.shares[0] > view.shares[1] && view.shares[0] + view.shares[1] > 0.7,
+        "{:?}",
+        view.shares
+    );
     assert_eq!(view.flow.exemplars.len(), 9);
     for way in &view.flow.exemplars {
         let (first, last) = (way[0], way[way.len() - 1]);
@@ -75,7 +84,12 @@ fn figure_2_flows_from_right_to_left_along_its_exemplars() {
         assert_eq!((first.1, last.1), (0.0, 1.0));
     }
     // In the midst of the movement every arrow points left.
-    let midst = || view.flow.arrows.iter().filter(|a| (0.3..0.7).contains(&a.phase));
+    let midst = || {
+        view.flow
+            .arrows
+            .iter()
+            .filter(|a| (0.3..0.7).contains(&a.phase))
+    };
     assert!(midst().count() > 100);
     for arrow in midst() {
         assert!(arrow.to[0] < arrow.from[0], "{arrow:?}");
@@ -94,7 +108,9 @@ fn figure_3_names_modules_that_exist() {
         let folder = source.join(room);
         let module = folder.join(format!("{name}.rs")).exists() || folder.join(name).is_dir();
         let room = std::fs::read_to_string(folder.join("mod.rs")).expect("a room");
-        let exported = room.split(|c: char| !c.is_alphanumeric()).any(|word| word == name);
+        let exported = room
+            .split(|c: char| !c.is_alphanumeric())
+            .any(|word| word == name);
         assert!(module || exported, "{}", node.module);
     }
 }
@@ -111,7 +127,11 @@ fn figure_4_s_interval_is_where_the_envelope_meets_the_value() {
     }
     // As in the paper, from the midst to the end, in one.
     assert_eq!(r.intervals.len(), 1);
-    assert!(r.intervals[0][0] > 0.4 && r.intervals[0][1] == 1.0, "{:?}", r.intervals);
+    assert!(
+        r.intervals[0][0] > 0.4 && r.intervals[0][1] == 1.0,
+        "{:?}",
+        r.intervals
+    );
     let svg = paper::mixture(&r.confining());
     assert!(says(&svg, &format!("\u{3c4} = {:.2}", r.intervals[0][0])) == 1);
 }
@@ -124,7 +144,11 @@ fn the_paper_s_interval_holds_the_exact_set_and_more() {
     // A patch is as long as a piece of phase.
     for patch in &r.exact {
         let piece = patch.phase[1] - patch.phase[0];
-        assert!(patch.phase[1] >= from - piece && patch.phase[0] <= to, "{:?}", patch.phase);
+        assert!(
+            patch.phase[1] >= from - piece && patch.phase[0] <= to,
+            "{:?}",
+            patch.phase
+        );
     }
     let share = r.share_of_admitted();
     assert!((0.02..0.9).contains(&share), "{share}");
@@ -156,7 +180,10 @@ fn figure_6_integrates_to_one_three_times() {
     let histogram: f64 = bars.map(|(e, d)| (e[1] - e[0]) * d).sum();
     assert!((histogram - 1.0).abs() < 1e-9, "{histogram}");
     for curve in [&figure.kernel, &figure.exact] {
-        let whole: f64 = curve.windows(2).map(|w| (w[1][0] - w[0][0]) * 0.5 * (w[0][1] + w[1][1])).sum();
+        let whole: f64 = curve
+            .windows(2)
+            .map(|w| (w[1][0] - w[0][0]) * 0.5 * (w[0][1] + w[1][1]))
+            .sum();
         assert!((whole - 1.0).abs() < 0.02, "{whole}");
     }
     // Counted again from the samples themselves.
@@ -166,7 +193,11 @@ fn figure_6_integrates_to_one_three_times() {
         let width = figure.edges[k + 1] - figure.edges[k];
         let density = count / (r.samples.len() as f64 * width);
         // A sample on the edge may be on either side.
-        assert!((density - figure.bars[k]).abs() < 1e-3 * figure.bars[k].max(1.0), "{k}: {density} {}", figure.bars[k]);
+        assert!(
+            (density - figure.bars[k]).abs() < 1e-3 * figure.bars[k].max(1.0),
+            "{k}: {density} {}",
+            figure.bars[k]
+        );
     }
     says(&paper::density(&figure), "");
 }
@@ -184,9 +215,14 @@ fn the_figures_numbers_are_those_the_classifier_uses() {
         .iter()
         .map(|name| body.joint(name).expect("a joint"))
         .collect();
-    let missing: Vec<bool> = (0..body.joints().len()).map(|j| !seen.contains(&j)).collect();
+    let missing: Vec<bool> = (0..body.joints().len())
+        .map(|j| !seen.contains(&j))
+        .collect();
     for (p, phase) in [([0.3, 0.6], 0.7), ([0.9, 0.1], 0.4), ([0.5, 0.5], 0.95)] {
-        let pose = vocabulary.primitives()[0].at(&p).expect("a course").pose(phase);
+        let pose = vocabulary.primitives()[0]
+            .at(&p)
+            .expect("a course")
+            .pose(phase);
         let observation = Observation {
             secs: 0.0,
             pose: &pose,
@@ -202,18 +238,29 @@ fn the_figures_numbers_are_those_the_classifier_uses() {
         for k in 0..vocabulary.primitives().len() {
             let mut phases = vec![[0.0, 1.0]];
             let mut log = 0.0;
-            for c in paper.chain(k).expect("a chain").into_iter().filter(|&c| known(c)) {
+            for c in paper
+                .chain(k)
+                .expect("a chain")
+                .into_iter()
+                .filter(|&c| known(c))
+            {
                 phases = paper.attained(k, c, place[c], &phases).expect("phases");
                 if phases.is_empty() {
                     log = f64::NEG_INFINITY;
                     break;
                 }
-                log += paper.density(k, c, place[c], &phases).expect("a density").ln();
+                log += paper
+                    .density(k, c, place[c], &phases)
+                    .expect("a density")
+                    .ln();
                 log += paper.range_rad(c).expect("a range").ln();
             }
             let expected = 1.0 / (1.0 + (-log).exp());
             let found = reading.posterior.primitives[k];
-            assert!((found - expected).abs() < 1e-9, "{p:?} {phase} {k}: {found} {expected}");
+            assert!(
+                (found - expected).abs() < 1e-9,
+                "{p:?} {phase} {k}: {found} {expected}"
+            );
             assert!(k > 0 || found > 0.5 && found < 1.0 - 1e-9, "{found}");
         }
     }
@@ -245,7 +292,10 @@ fn figure_7_is_winner_take_all_and_concatenates_what_the_winners_predict() {
 fn figures_are_the_same_bytes_on_one_thread_and_on_many() {
     let folder = tempfile::tempdir().expect("a folder");
     let of = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("threads");
         let place = folder.path().join(threads.to_string());
         pool.install(|| {
             let figures = draw(0, &mut |_| {}).expect("figures");

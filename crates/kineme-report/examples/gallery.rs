@@ -51,8 +51,13 @@ fn main() -> std::io::Result<()> {
             format!("{segments} segments fall into {groups} groups; one in nine belongs to none."),
             "Everything here is made up, to look at the figures.".to_owned(),
         ];
-        let page = report::page(&format!("A {size} vocabulary"), &summary, &shown);
-        std::fs::write(folder.join(format!("{size}.html")), page)?;
+        let page = report::Page {
+            title: format!("A {size} vocabulary"),
+            summary: summary.to_vec(),
+            figures: shown,
+            ..report::Page::default()
+        };
+        std::fs::write(folder.join(format!("{size}.html")), page.html())?;
     }
     Ok(())
 }

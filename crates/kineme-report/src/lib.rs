@@ -1,4 +1,7 @@
-//! Figures of a derived vocabulary as SVG, and a page that shows them.
+//! Figures of a derived vocabulary as SVG, and the page that shows them and the movement itself.
+//!
+//! The page ([`Page`]) is one file of HTML: what moves on it is plain data ([`scene::Scene`]), drawn by the viewer, a
+//! program of the browser that `cargo xtask viewer` builds and this crate carries.
 //!
 //! Every figure is a function from plain data to the text of one SVG: no file, no font and no script beside it, the
 //! same bytes from the same data. It follows the reader's light or dark setting, tells groups apart by colours that
@@ -14,21 +17,29 @@
 mod axis;
 mod embedding;
 mod hand_paths;
+mod packed;
 mod page;
 mod palette;
 pub mod paper;
 #[cfg(feature = "png")]
 mod png;
 mod residual;
+pub mod scene;
+mod strip;
 mod svg;
+mod table;
 mod timeline;
 mod transitions;
+mod viewer;
 
 pub use embedding::{Embedding, embedding};
 pub use hand_paths::{GroupPaths, LOW_COHERENCE, hand_paths};
-pub use page::{Figure, page};
+pub use page::{Figure, Page};
 #[cfg(feature = "png")]
 pub use png::{PngError, png};
 pub use residual::residual_variance;
+pub use strip::strip;
+pub use table::Table;
 pub use timeline::{Row, Span, timeline};
 pub use transitions::transitions;
+pub use viewer::{HOW_TO_BUILD, viewer};

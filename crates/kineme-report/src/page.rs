@@ -1,6 +1,13 @@
-//! One page of HTML with the figures in it: opens from a file, offline.
+//! One page of HTML: movement in three dimensions, figures and tables. Opens from a file, offline.
 
+use serde::Serialize;
+
+use crate::palette::{COLOURS, colour};
+use crate::scene::{Card, Scene};
+use crate::strip::strip;
 use crate::svg::escape;
+use crate::table::Table;
+use crate::viewer::{HOW_TO_BUILD, viewer};
 
 /// A figure on the page.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -13,47 +20,260 @@ pub struct Figure {
     pub svg: String,
 }
 
-const STYLE: &str = "\
-:root{color-scheme:light dark;--paper:#fff;--ink:#22262b;--soft:#5f6872;--line:#dde1e5}
-@media (prefers-color-scheme:dark){:root{--paper:#15181c;--ink:#e4e7ea;--soft:#a0a8b1;--line:#2c3239}}
-*{box-sizing:border-box}
-body{margin:0;background:var(--paper);color:var(--ink);font:17px/1.55 Charter,'Bitstream Charter','Iowan Old Style',\
-Georgia,serif;font-feature-settings:'kern','liga';hyphens:auto;text-rendering:optimizeLegibility}
-main{max-width:1000px;margin:0 auto;padding:3rem 1.25rem 5rem}
-h1{font-size:2rem;line-height:1.2;font-weight:600;letter-spacing:-.01em;margin:0 0 1.25rem;text-wrap:balance}
-p{max-width:40rem;margin:0 0 .8rem;font-variant-numeric:oldstyle-nums}
-figure{margin:3rem 0 0;padding-top:1.5rem;border-top:1px solid var(--line)}
-.scroll{overflow-x:auto;margin-inline:-20px}
-figure svg{display:block;max-width:100%;height:auto}
-figcaption{max-width:40rem;margin-top:.75rem;color:var(--soft);font-size:.9rem;line-height:1.45}
-@media (max-width:660px){figure svg{max-width:none}}
-@media print{main{max-width:none;padding:0}figure{break-inside:avoid}}";
+/// What a page shows, from top to bottom.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Page {
+    /// Its title.
+    pub title: String,
+    /// Paragraphs of plain text.
+    pub summary: Vec<String>,
+    /// What moves.
+    pub scene: Scene,
+    /// Tables.
+    pub tables: Vec<Table>,
+    /// Still figures.
+    pub figures: Vec<Figure>,
+}
 
-/// A page with a title, paragraphs of plain text and the figures in their order.
-///
-/// Nothing is loaded from elsewhere: styles and figures are in the page, and there is no script.
-pub fn page(title: &str, summary: &[String], figures: &[Figure]) -> String {
-    let title = escape(title);
-    let mut html = format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}\n</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n"
-    );
-    for paragraph in summary {
-        html.push_str(&format!("<p>{}</p>\n", escape(paragraph)));
+const STYLE: &str = include_str!("page.css");
+/// Nothing is loaded from anywhere, whatever the data say.
+const POLICY: &str =
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+/// Postures in the strip of a primitive.
+const POSTURES: usize = 9;
+
+impl Page {
+    /// The page. Nothing is loaded from elsewhere: styles, figures, data and, where it was built, the viewer are in it.
+    /// Without the viewer it has still pictures and says what would make them move.
+    pub fn html(&self) -> String {
+        self.html_with(viewer())
     }
-    for Figure {
-        title,
-        caption,
-        svg,
-    } in figures
-    {
-        let (title, caption) = (escape(title), escape(caption));
-        html.push_str(&format!(
-            "<figure aria-label=\"{title}\">\n<div class=\"scroll\">\n{svg}</div>\n\
-             <figcaption>{caption}</figcaption>\n</figure>\n"
-        ));
+
+    fn html_with(&self, viewer: Option<(&str, &str)>) -> String {
+        let title = escape(&self.title);
+        let moving = viewer.filter(|_| !self.scene.is_empty());
+        let more_style = moving.map_or("", |(_, style)| style);
+        let mut html = format!(
+            "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
+             <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n\
+             <meta name=\"color-scheme\" content=\"light dark\">\n\
+             <title>{title}</title>\n<style>\n{STYLE}{more_style}</style>\n</head>\n<body>\n<main>\n\
+             <header>\n<h1>{title}</h1>\n"
+        );
+        // The first paragraph says what this is; then comes what moves, then what there is to say of it.
+        let (first, more) = self.summary.split_at(self.summary.len().min(1));
+        html.push_str(&paragraphs(first));
+        html.push_str("</header>\n");
+        if !self.scene.is_empty() {
+            html.push_str(&self.stage(moving.is_some()));
+        }
+        html.push_str(&paragraphs(more));
+        html.push_str(&self.cards());
+        for table in &self.tables {
+            html.push_str(&table.html());
+        }
+        for Figure {
+            title,
+            caption,
+            svg,
+        } in &self.figures
+        {
+            let (title, caption) = (escape(title), escape(caption));
+            html.push_str(&format!(
+                "<figure aria-label=\"{title}\">\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" \
+                 aria-label=\"{title}\">\n{svg}</div>\n<figcaption>{caption}</figcaption>\n</figure>\n"
+            ));
+        }
+        html.push_str("</main>\n");
+        if let Some((script, _)) = moving {
+            html.push_str(&format!(
+                "<script type=\"application/json\" id=\"scene\">{}</script>\n<script>\n{script}</script>\n",
+                data(&self.scene)
+            ));
+        }
+        html.push_str("</body>\n</html>\n");
+        html
     }
-    html.push_str("</main>\n</body>\n</html>\n");
-    html
+
+    /// Where the viewer puts the stage, or why there is none.
+    fn stage(&self, built: bool) -> String {
+        let mut html = String::new();
+        if built {
+            html.push_str(
+                "<noscript><p class=\"notice\">The bodies on this page move by a script, which this browser does \
+                 not run.</p></noscript>\n",
+            );
+        } else {
+            html.push_str(&format!(
+                "<p class=\"notice\">Still pictures only: the viewer was not built into this program. <code>{HOW_TO_BUILD}\
+                 </code> builds it (node is needed), and the next build of kineme puts it into its pages.</p>\n"
+            ));
+        }
+        if built && !self.scene.takes.is_empty() {
+            html.push_str(
+                "<section id=\"stage\" aria-label=\"Movement in three dimensions\"></section>\n",
+            );
+        }
+        html
+    }
+
+    /// The cards as they are seen without the viewer, which puts what moves into them.
+    fn cards(&self) -> String {
+        if self.scene.primitives.is_empty() {
+            return String::new();
+        }
+        let mut html = "<section id=\"primitives\" aria-label=\"Primitives\">\n<h2>Primitives</h2>\n<div class=\"cards\">\n".to_owned();
+        for card in &self.scene.primitives {
+            html.push_str(&self.card(card));
+        }
+        html.push_str("</div>\n</section>\n");
+        html
+    }
+
+    /// A primitive as it is seen without the viewer: in the middle of its parameters, phase by phase.
+    fn card(&self, card: &Card) -> String {
+        let name = escape(&card.name);
+        let mut html = format!(
+            "<article class=\"card\" style=\"--hue:{}\">\n<h3>{name}</h3>\n",
+            colour(card.colour)
+        );
+        if !card.doubt.is_empty() {
+            html.push_str(&format!("<p class=\"doubt\">{}</p>\n", escape(&card.doubt)));
+        }
+        if let Some(body) = self.scene.bodies.get(card.body) {
+            let node = middle(card);
+            let last = card.phases.saturating_sub(1);
+            let row = |i: usize| node * card.phases + i * last / (POSTURES - 1);
+            let rows: Vec<usize> = (0..POSTURES).map(row).collect();
+            let title = format!("{}: postures from its beginning to its end", card.name);
+            let strip = strip(&title, body, &card.lattice, &rows, &colour(card.colour));
+            html.push_str(&format!("<div class=\"strip\">\n{strip}</div>\n"));
+        }
+        html.push_str("<dl>");
+        for [name, value] in &card.facts {
+            html.push_str(&format!(
+                "<div><dt>{}</dt><dd>{}</dd></div>",
+                escape(name),
+                escape(value)
+            ));
+        }
+        html.push_str("</dl>\n</article>\n");
+        html
+    }
+}
+
+fn paragraphs(texts: &[String]) -> String {
+    let paragraph = |text: &String| format!("<p>{}</p>\n", escape(text));
+    texts.iter().map(paragraph).collect()
+}
+
+/// The node of the grid nearest to where the sliders begin.
+fn middle(card: &Card) -> usize {
+    card.axes.iter().fold(0, |node, axis| {
+        let share = ((axis.start - axis.low) / (axis.high - axis.low)).clamp(0.0, 1.0);
+        let last = axis.nodes.saturating_sub(1);
+        node * axis.nodes + (share * last as f64).round() as usize
+    })
+}
+
+/// The scene with the colours that its numbers mean.
+#[derive(Serialize)]
+struct Data<'a> {
+    palette: Vec<String>,
+    #[serde(flatten)]
+    scene: &'a Scene,
+}
+
+/// The scene as JSON that may stand in a script element: no text in it can end the element.
+fn data(scene: &Scene) -> String {
+    let data = Data {
+        palette: (0..COLOURS).map(colour).collect(),
+        scene,
+    };
+    // Plain structs of numbers and text always become JSON.
+    let json = serde_json::to_string(&data).unwrap_or_default();
+    json.replace('<', "\\u003c")
+        .replace('\u{2028}', "\\u2028")
+        .replace('\u{2029}', "\\u2029")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Actor, Body, Bone, Places, Take};
+
+    const SCRIPT: &str = "console.log('moved')";
+
+    fn page() -> Page {
+        let body = Body {
+            name: "stick".into(),
+            points: 2,
+            bones: vec![Bone {
+                ends: [0, 1],
+                radii: [0.1, 0.1],
+            }],
+            ..Body::default()
+        };
+        let actor = Actor {
+            name: "</script><script>alert(1)</script>".into(),
+            rate_hz: 30.0,
+            frames: Places::pack(&[vec![[0.0; 3], [0.0, 0.0, 1.0]]]),
+            ..Actor::default()
+        };
+        Page {
+            title: "</title><b>".into(),
+            scene: Scene {
+                bodies: vec![body],
+                takes: vec![Take {
+                    name: "<!--".into(),
+                    actors: vec![actor],
+                    ..Take::default()
+                }],
+                primitives: vec![Card {
+                    name: "<jab>".into(),
+                    phases: 2,
+                    lattice: Places::pack(&[
+                        vec![[0.0; 3], [0.0, 0.0, 1.0]],
+                        vec![[0.0; 3], [0.0, 1.0, 0.0]],
+                    ]),
+                    ..Card::default()
+                }],
+            },
+            ..Page::default()
+        }
+    }
+
+    #[test]
+    fn no_name_ends_an_element() {
+        let html = page().html_with(Some((SCRIPT, "")));
+        assert_eq!(html.matches("<script").count(), 2, "data and viewer");
+        assert_eq!(html.matches("</script>").count(), 2);
+        assert_eq!(html.matches("</title>").count(), 1);
+        assert!(!html.contains("<!--") && !html.contains("<jab>"));
+    }
+
+    #[test]
+    fn the_data_are_the_scene() {
+        let page = page();
+        let html = page.html_with(Some((SCRIPT, "")));
+        let (_, rest) = html.split_once("id=\"scene\">").expect("data");
+        let (json, _) = rest.split_once("</script>").expect("its end");
+        let read: Scene = serde_json::from_str(json).expect("JSON");
+        assert_eq!(read, page.scene);
+        assert!(json.contains("\"palette\":[\"#0072b2\""));
+    }
+
+    #[test]
+    fn without_the_viewer_the_page_says_so_and_has_still_pictures() {
+        let html = page().html_with(None);
+        assert!(html.contains(HOW_TO_BUILD) && html.contains("class=\"strip\""));
+        assert!(!html.contains("<script") && !html.contains("id=\"stage\""));
+    }
+
+    #[test]
+    fn a_page_without_movement_needs_no_viewer() {
+        let html = Page::default().html_with(Some((SCRIPT, "")));
+        assert!(!html.contains("<script") && !html.contains(HOW_TO_BUILD));
+    }
 }

@@ -3,7 +3,7 @@
 mod made_up;
 
 use kineme_report::{
-    Embedding, Figure, GroupPaths, Row, Span, embedding, hand_paths, page, residual_variance,
+    Embedding, Figure, GroupPaths, Page, Row, Span, embedding, hand_paths, residual_variance,
     timeline, transitions,
 };
 use made_up::{MadeUp, made_up};
@@ -184,7 +184,12 @@ fn names_are_escaped_wherever_they_stand() {
     }
     let svg = hand_paths(&made.paths);
     assert_eq!(check(&svg, says("a<b> & \"c'\u{fffd}")), 1);
-    let page = page(name, &[name.to_owned()], &[]);
+    let page = Page {
+        title: name.to_owned(),
+        summary: vec![name.to_owned()],
+        ..Page::default()
+    };
+    let page = page.html();
     assert_eq!(page.matches("a&lt;b&gt; &amp; &quot;c&#39;").count(), 3);
 }
 
@@ -293,7 +298,13 @@ fn the_page_holds_its_figures_and_loads_nothing() {
         caption: "A & B".into(),
         svg: svg.clone(),
     };
-    let html = page("Vocabulary", &["First.".into()], &[figure.clone(), figure]);
+    let page = Page {
+        title: "Vocabulary".into(),
+        summary: vec!["First.".into()],
+        figures: vec![figure.clone(), figure],
+        ..Page::default()
+    };
+    let html = page.html();
     assert_eq!(html.matches(&svg).count(), 2);
     assert_eq!(html.matches("A &amp; B").count(), 2);
     for reference in ["<script", "src=", "href=", "url(", "@import"] {

@@ -28,6 +28,7 @@ pub enum ServoName {
 Examples:
   kineme control boxing.kineme plan.toml --body adonis         on a body of 20 joint angles
   kineme control boxing.kineme plan.toml --body ares -o ring.bvh
+  kineme control boxing.kineme plan.toml --body adonis --report ring    and look at it: ring/index.html
   kineme control boxing.kineme plan.toml --body g1.xml         on your robot
   kineme control boxing.kineme spar.toml --watch attacker.bvh  answer what another one does
   producer | kineme control boxing.kineme spar.toml --watch -  answer a live stream of joint angles
@@ -62,6 +63,9 @@ pub struct ControlArgs {
     /// The motion to write, .bvh, .csv or .npz: what the body did
     #[arg(short, long, value_name = "OUT")]
     pub out: Option<PathBuf>,
+    /// Write a page that shows what the body did into this folder
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
     /// What it watches in place of the plan's [observe] motion; - is stdin: rows of joint angles
     #[arg(long, value_name = "MOTION")]
     pub watch: Option<PathBuf>,

@@ -15,6 +15,8 @@ pub enum MethodName {
     Frame,
     /// As published, every primitive by itself
     Paper,
+    /// The hands alone, as `encode` hears them
+    Encode,
     /// The nearest exemplar by time warping, a baseline
     #[value(name = "1nn-dtw")]
     NearestDtw,

@@ -6,6 +6,7 @@ mod encode;
 mod evaluate;
 mod model;
 mod reproduce;
+mod view;
 
 pub use classify::{ClassifierArgs, ClassifierName, ClassifyArgs};
 pub use control::{ControlArgs, ServoName};
@@ -16,6 +17,7 @@ pub use model::{
     Renaming, ShowArgs, SynthesizeArgs, Target,
 };
 pub use reproduce::{ReproduceArgs, Reproduced};
+pub use view::ViewArgs;
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -38,6 +40,7 @@ Examples:
   kineme evaluate moves.kineme tests.csv          how well its movements are recognised
   kineme classify moves.kineme take.bvh           which of them a motion is, and when
   kineme encode moves.kineme take.bvh             which of them a motion is, by its hands
+  kineme view take.bvh                            a motion, or a vocabulary, in the browser
   kineme convert take.amc take.bvh                another format, nothing lost
 
 Exit codes: 0 done, 1 the work failed, 2 usage, 3 an input cannot be read.";
@@ -88,6 +91,7 @@ pub enum Command {
     Classify(Box<ClassifyArgs>),
     Encode(Box<EncodeArgs>),
     Control(Box<ControlArgs>),
+    View(Box<ViewArgs>),
     Demo(DemoArgs),
     Reproduce(ReproduceArgs),
 }

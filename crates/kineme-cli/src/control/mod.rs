@@ -11,8 +11,12 @@ use kineme::Vocabulary;
 use kineme::control::{ControlSettings, Controller, Plan, Robot};
 use kineme::interaction::{Performance, Session, SessionSettings, standing};
 use kineme::perception::{Filter, FilterSettings};
-use kineme::primitive::{Observations, Recogniser};
+use kineme::primitive::{Observations, Recogniser, readings};
 use kineme_formats::{output, plan};
+use kineme_paper::figures::PAGE;
+use kineme_paper::scene::take_of_performance;
+use kineme_report::Page;
+use kineme_report::scene::Scene;
 
 use crate::args::{ControlArgs, Global, Written};
 use crate::failure::{Failure, complain, print};
@@ -26,6 +30,8 @@ const NAMED: usize = 8;
 
 pub fn run(args: &ControlArgs, global: &Global) -> Result<u8, Failure> {
     let written = written(args, global)?;
+    let page = args.report.as_ref().map(|folder| folder.join(PAGE));
+    refuse_existing(page.as_deref(), global)?;
     let vocabulary = read(&args.vocabulary)?;
     let (name, bytes) = read_bytes(&args.plan, "a plan")?;
     let file = plan::parse(&name, &bytes)?;
@@ -39,11 +45,15 @@ pub fn run(args: &ControlArgs, global: &Global) -> Result<u8, Failure> {
     }
     let mut robot = machines::robot(args, &vocabulary)?;
     let begun = Instant::now();
-    let performance = perform(&vocabulary, plan, watched, &mut *robot)?;
+    let performance = perform(&vocabulary, plan, watched.as_ref(), &mut *robot)?;
     let factor = plan.seconds / begun.elapsed().as_secs_f64();
     if let (Some(out), Some(format)) = (&args.out, written) {
         let bytes = format.bytes(&performance.done)?;
         output::write_bytes(out, existing(global), &bytes).map_err(unwritten)?;
+    }
+    if let Some(page) = &page {
+        let html = shown(&name, &vocabulary, &performance, watched.as_ref())?;
+        output::write_bytes(page, existing(global), html.as_bytes()).map_err(unwritten)?;
     }
     let told = told::Told::of(
         &performance,
@@ -53,7 +63,7 @@ pub fn run(args: &ControlArgs, global: &Global) -> Result<u8, Failure> {
     );
     let text = match global.json {
         true => crate::json::line(&told)?,
-        false => told.text(args.out.as_deref()),
+        false => told.text([args.out.as_deref(), page.as_deref()]),
     };
     print(text.as_bytes())?;
     Ok(0)
@@ -62,7 +72,7 @@ pub fn run(args: &ControlArgs, global: &Global) -> Result<u8, Failure> {
 fn perform(
     vocabulary: &Vocabulary,
     plan: &Plan,
-    watched: Option<Watched>,
+    watched: Option<&Watched>,
     robot: &mut dyn Robot,
 ) -> Result<Performance, Failure> {
     let filter = match watched {
@@ -113,6 +123,32 @@ fn tell_unshown(session: &Session<'_>, vocabulary: &Vocabulary) {
         "note: the robot has no counterpart of {}{more}",
         named.join(", ")
     ));
+}
+
+/// The page of a performance; a stream that was watched is gone and not on it.
+fn shown(
+    plan: &str,
+    vocabulary: &Vocabulary,
+    performance: &Performance,
+    watched: Option<&Watched>,
+) -> Result<String, Failure> {
+    let seen = match watched {
+        Some(Watched::Recording(seen)) => {
+            let filter = Filter::new(vocabulary, &FilterSettings::default())?;
+            Some((seen.motion(), readings(&filter, seen)?))
+        }
+        _ => None,
+    };
+    let mut scene = Scene::default();
+    let seen = seen.as_ref().map(|(motion, r)| (*motion, r.as_slice()));
+    let take = take_of_performance(&mut scene, vocabulary, performance, seen);
+    scene.takes.push(take);
+    let page = Page {
+        title: format!("{plan} on {}", performance.done.skeleton().name()),
+        scene,
+        ..Page::default()
+    };
+    Ok(page.html())
 }
 
 fn written(args: &ControlArgs, global: &Global) -> Result<Option<Written>, Failure> {

@@ -83,7 +83,7 @@ impl Told {
     }
 
     /// The same for people.
-    pub fn text(&self, out: Option<&Path>) -> String {
+    pub fn text(&self, written: [Option<&Path>; 2]) -> String {
         let mut text = String::new();
         let rows: Vec<Vec<String>> = self.behaviors.iter().map(ToldRun::row).collect();
         if rows.is_empty() {
@@ -109,12 +109,12 @@ impl Told {
         let _ = match self.physics {
             true => writeln!(
                 text,
-                "\n{} ({} degrees of freedom) came within {:.2} degrees of what it was told (root mean square; {:.1} at \
+                "\n{} ({} degrees of freedom) came within {} degrees of what it was told (root mean square; {} at \
                  most), with {:.2} % of its torques at their limit",
                 self.body,
                 self.dof,
-                self.tracking_rms_rad.to_degrees(),
-                self.tracking_max_rad.to_degrees(),
+                few(self.tracking_rms_rad.to_degrees()),
+                few(self.tracking_max_rad.to_degrees()),
                 100.0 * self.saturated_fraction
             ),
             false => writeln!(
@@ -126,8 +126,8 @@ impl Told {
         if let Some(factor) = self.real_time_factor {
             let _ = writeln!(text, "{:.1} s took {factor:.1} times less", self.seconds);
         }
-        if let Some(out) = out {
-            let _ = writeln!(text, "written: {}", out.display());
+        for path in written.into_iter().flatten() {
+            let _ = writeln!(text, "written: {}", path.display());
         }
         text
     }
@@ -152,5 +152,15 @@ impl ToldRun {
             self.joints.clone(),
             notes.join(", "),
         ]
+    }
+}
+
+/// Two digits that count.
+fn few(value: f64) -> String {
+    match value {
+        v if v >= 0.1 => format!("{v:.1}"),
+        v if v >= 0.01 => format!("{v:.2}"),
+        v if v > 0.0 => format!("{v:.0e}"),
+        _ => "0".into(),
     }
 }

@@ -50,13 +50,13 @@ impl Watched {
 
     /// Runs the session to its end while it watches.
     pub fn run(
-        self,
+        &self,
         session: &mut Session<'_>,
         body: &Arc<Skeleton>,
         bar: &ProgressBar,
     ) -> Result<(), Failure> {
         match self {
-            Self::Recording(seen) => alone(session, Some(&seen), bar),
+            Self::Recording(seen) => alone(session, Some(seen), bar),
             Self::Stream => stream(&mut open_stream(stdin().lock(), body)?, session, bar),
         }
     }

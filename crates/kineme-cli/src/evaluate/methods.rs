@@ -5,6 +5,7 @@ use kineme::Vocabulary;
 use kineme::evaluation::{
     Constant, NearestDtw, NearestDtwSettings, NearestPosture, NearestPostureSettings,
 };
+use kineme::perception::encoding::{Encoder, EncodingSettings};
 use kineme::primitive::Recogniser;
 
 use crate::args::{ClassifierArgs, ClassifierName, MethodName};
@@ -21,6 +22,7 @@ pub(super) fn recogniser(
         MethodName::Filter => classifier(ClassifierName::Filter)?,
         MethodName::Frame => classifier(ClassifierName::Frame)?,
         MethodName::Paper => classifier(ClassifierName::Paper)?,
+        MethodName::Encode => Box::new(Encoder::new(vocabulary, &EncodingSettings::default())?),
         MethodName::NearestDtw => {
             Box::new(NearestDtw::new(vocabulary, &NearestDtwSettings::default())?)
         }
@@ -35,7 +37,7 @@ pub(super) fn recogniser(
 /// Whether a method ever answers that a movement is none of the primitives.
 pub(super) fn can_reject(method: MethodName) -> bool {
     match method {
-        MethodName::Filter | MethodName::Frame | MethodName::Paper => true,
+        MethodName::Filter | MethodName::Frame | MethodName::Paper | MethodName::Encode => true,
         MethodName::NearestDtw | MethodName::NearestPosture | MethodName::Constant => false,
     }
 }

@@ -63,10 +63,16 @@ pub fn encoded() -> Result<Encoded> {
 fn done(known: &Vocabulary) -> Result<(Motion, Vec<(f64, f64, usize)>)> {
     let adonis = Arc::new(kineme::adonis()?);
     let moves = vocabulary(&["punching.toml", "horizontal-waving.toml"], &adonis)?;
-    let course = |name: &str, p: &[f64]| Ok::<_, kineme::Error>(Arc::new(moves.primitive(name)?.at(p)?));
+    let course =
+        |name: &str, p: &[f64]| Ok::<_, kineme::Error>(Arc::new(moves.primitive(name)?.at(p)?));
     let (first, p) = DONE[0];
     let state = State::on_course(course(first, &p)?.as_ref(), 0.0, 1.0);
-    let mut body = Synthesizer::new(Arc::clone(&adonis), RATE_HZ, &state, Inertialization::default())?;
+    let mut body = Synthesizer::new(
+        Arc::clone(&adonis),
+        RATE_HZ,
+        &state,
+        Inertialization::default(),
+    )?;
     let (mut poses, mut roots, mut truth) = (Vec::new(), Vec::new(), Vec::new());
     for (name, p) in DONE {
         body.start(course(name, &p)?, &Manner::default())?;
@@ -80,7 +86,10 @@ fn done(known: &Vocabulary) -> Result<(Motion, Vec<(f64, f64, usize)>)> {
         let index = index.ok_or_else(|| format!("no primitive `{name}`"))?;
         truth.push((start as f64 / RATE_HZ, roots.len() as f64 / RATE_HZ, index));
     }
-    Ok((Motion::new("observed", adonis, RATE_HZ, poses, roots)?, truth))
+    Ok((
+        Motion::new("observed", adonis, RATE_HZ, poses, roots)?,
+        truth,
+    ))
 }
 
 /// One hand of it: forward over time, and from above.
@@ -91,13 +100,20 @@ fn drawn(
     hand: usize,
 ) -> EncodedPaths {
     let places = |points: &[Vec<Option<Vector3<f64>>>]| -> Vec<Vector3<f64>> {
-        points.iter().filter_map(|p| p.get(hand).copied().flatten()).collect()
+        points
+            .iter()
+            .filter_map(|p| p.get(hand).copied().flatten())
+            .collect()
     };
     // From above, as a map: forward is up, to the right is right.
     let above = |p: &Vector3<f64>| [-p.y, p.x];
     let timed = |d: &Decided, points: &[Vector3<f64>]| -> Vec<[f64; 2]> {
         let at = |i: usize| d.start_secs + i as f64 * d.step_secs;
-        points.iter().enumerate().map(|(i, p)| [at(i), p.x]).collect()
+        points
+            .iter()
+            .enumerate()
+            .map(|(i, p)| [at(i), p.x])
+            .collect()
     };
     let mut paths = EncodedPaths {
         title: "Figure 7. Trajectory encoding".into(),
@@ -115,10 +131,16 @@ fn drawn(
         let own = d.instants() + 1;
         let seen = places(&d.seen);
         let winner = places(&d.predicted[d.winner]);
-        paths.observed.extend(timed(d, &seen[..own.min(seen.len())]));
-        paths.encoded.extend(timed(d, &winner[..own.min(winner.len())]));
+        paths
+            .observed
+            .extend(timed(d, &seen[..own.min(seen.len())]));
+        paths
+            .encoded
+            .extend(timed(d, &winner[..own.min(winner.len())]));
         paths.observed_view.extend(seen.iter().take(own).map(above));
-        paths.encoded_view.extend(winner.iter().take(own).map(above));
+        paths
+            .encoded_view
+            .extend(winner.iter().take(own).map(above));
         let predicted: Vec<Vec<Vector3<f64>>> = d.predicted.iter().map(|p| places(p)).collect();
         paths.decisions.push(EncodedDecision {
             start: d.start_secs,
@@ -126,10 +148,15 @@ fn drawn(
             winner: d.winner,
             similarities: d.similarities.clone(),
             predicted: predicted.iter().map(|p| timed(d, p)).collect(),
-            predicted_view: predicted.iter().map(|p| p.iter().map(above).collect()).collect(),
+            predicted_view: predicted
+                .iter()
+                .map(|p| p.iter().map(above).collect())
+                .collect(),
         });
         let same = paths.truth.iter().filter(|t| t.2 == d.winner);
-        agreed += same.map(|t| (t.1.min(d.end_secs) - t.0.max(d.start_secs)).max(0.0)).sum::<f64>();
+        agreed += same
+            .map(|t| (t.1.min(d.end_secs) - t.0.max(d.start_secs)).max(0.0))
+            .sum::<f64>();
     }
     let whole = decisions.last().map_or(1.0, |d| d.end_secs);
     paths.remark = format!(

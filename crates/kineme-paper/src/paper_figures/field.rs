@@ -43,7 +43,9 @@ pub fn field_view(primitive: &Primitive) -> Result<FieldView> {
         let course = primitive.at(&p)?;
         for k in 0..PHASES {
             let phase = k as f64 / (PHASES - 1) as f64;
-            let state = field.enter_at(&course.pose(phase), phase)?.with_parameters(&p)?;
+            let state = field
+                .enter_at(&course.pose(phase), phase)?
+                .with_parameters(&p)?;
             let update = field.update(&state);
             let pairs = state.pose().iter().zip(&update.velocity);
             let next: Vec<f64> = pairs.map(|(x, v)| x + AHEAD_SECS * v).collect();
@@ -77,7 +79,8 @@ pub fn field_view(primitive: &Primitive) -> Result<FieldView> {
         DRAWN.iter().map(stick).collect()
     };
     let [first, second] = plane.shares.map(|s| 100.0 * s);
-    let axis = |k: usize, share: f64| format!("principal coordinate {k} ({share:.0} % of variance)");
+    let axis =
+        |k: usize, share: f64| format!("principal coordinate {k} ({share:.0} % of variance)");
     let flow = Flow {
         title: "Figure 2. The flowfield of horizontal arm waving".into(),
         subtitle: format!(
@@ -148,10 +151,21 @@ impl Plane {
         let centred = DMatrix::from_fn(postures.len(), dof, |r, c| postures[r][c] - mean[c]);
         let eigen = SymmetricEigen::new(centred.tr_mul(&centred) / count);
         let mut order: Vec<usize> = (0..dof).collect();
-        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]).then(a.cmp(&b)));
+        order.sort_by(|&a, &b| {
+            eigen.eigenvalues[b]
+                .total_cmp(&eigen.eigenvalues[a])
+                .then(a.cmp(&b))
+        });
         let whole: f64 = eigen.eigenvalues.iter().sum();
         let mut plane = Self {
-            directions: [0, 1].map(|k| eigen.eigenvectors.column(order[k]).iter().copied().collect()),
+            directions: [0, 1].map(|k| {
+                eigen
+                    .eigenvectors
+                    .column(order[k])
+                    .iter()
+                    .copied()
+                    .collect()
+            }),
             shares: [0, 1].map(|k| eigen.eigenvalues[order[k]] / whole),
             mean,
         };
@@ -160,7 +174,10 @@ impl Plane {
         let far = |a: &[f64], b: &[f64], k: usize| plane.place(b)[k] - plane.place(a)[k];
         let ends = [0.0, 1.0].map(|phase| primitive.registered(top, phase).pose);
         let heights = [bottom, top].map(|i| primitive.registered(i, 0.5).pose);
-        let flips = [far(&ends[0], &ends[1], 0) > 0.0, far(&heights[0], &heights[1], 1) < 0.0];
+        let flips = [
+            far(&ends[0], &ends[1], 0) > 0.0,
+            far(&heights[0], &heights[1], 1) < 0.0,
+        ];
         for (direction, flip) in plane.directions.iter_mut().zip(flips) {
             if flip {
                 direction.iter_mut().for_each(|v| *v = -*v);

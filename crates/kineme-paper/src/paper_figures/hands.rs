@@ -41,7 +41,11 @@ pub fn panels(demo: &Demo) -> Result<Vec<HandPanel>> {
     let others = (0..groups.len()).filter(|g| !shown.contains(g));
     let worst = others.min_by(|&a, &b| coherence(a).total_cmp(&coherence(b)));
     if let Some(worst) = worst {
-        let mut last = panel(demo, worst, "The least coherent group, which nobody meant".into())?;
+        let mut last = panel(
+            demo,
+            worst,
+            "The least coherent group, which nobody meant".into(),
+        )?;
         last.unintended = true;
         panels.push(last);
     }
@@ -82,14 +86,24 @@ fn interpolated(primitive: &Primitive) -> Result<Vec<[Vec<[f64; 3]>; 2]>> {
         pair.map(|(a, b)| 0.5 * (a + b)).collect()
     };
     // Without parameters all are the one movement.
-    let count = if primitive.parameters().dims() == 0 { 1 } else { n.min(MOST) };
+    let count = if primitive.parameters().dims() == 0 {
+        1
+    } else {
+        n.min(MOST)
+    };
     (0..count)
         .map(|k| {
             let course = primitive.at(&between(k * n / count))?;
             let pose = |i: usize| course.pose(i as f64 / (POSTURES - 1) as f64);
             let poses: Vec<f64> = (0..POSTURES).flat_map(pose).collect();
             let body = Arc::clone(primitive.body());
-            let motion = Motion::new("interpolated", body, 60.0, poses, vec![Root::ORIGIN; POSTURES])?;
+            let motion = Motion::new(
+                "interpolated",
+                body,
+                60.0,
+                poses,
+                vec![Root::ORIGIN; POSTURES],
+            )?;
             Ok(wrists(&motion, 0..POSTURES))
         })
         .collect()

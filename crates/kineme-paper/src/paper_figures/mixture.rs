@@ -79,7 +79,9 @@ pub fn relaxation(vocabulary: &Vocabulary) -> Result<Relaxation> {
     let inside = |phase: f64| intervals.iter().any(|i| i[0] <= phase && phase <= i[1]);
     let slices = mixtures[1].phases.iter().zip(&mixtures[1].samples);
     let samples = slices.filter(|(phase, _)| inside(**phase));
-    let samples = samples.flat_map(|(_, slice)| slice.iter().copied()).collect();
+    let samples = samples
+        .flat_map(|(_, slice)| slice.iter().copied())
+        .collect();
     let all = frame.explaining(k, &[], &[])?;
     let mut rows: Vec<Vec<f64>> = all.iter().map(|p| p.parameters.clone()).collect();
     rows.dedup();
@@ -102,15 +104,24 @@ pub fn relaxation(vocabulary: &Vocabulary) -> Result<Relaxation> {
             exemplars(&paper, primitive, sought)?,
         ],
         names: [OBSERVED, SOUGHT].map(str::to_string),
-        parameters: primitive.parameters().axes().iter().map(|x| x.name.clone()).collect(),
+        parameters: primitive
+            .parameters()
+            .axes()
+            .iter()
+            .map(|x| x.name.clone())
+            .collect(),
         rows,
     })
 }
 
 /// A coordinate of each exemplar over phase.
-fn exemplars(paper: &Paper, primitive: &Primitive, coordinate: usize) -> Result<Vec<Vec<[f64; 2]>>> {
+fn exemplars(
+    paper: &Paper,
+    primitive: &Primitive,
+    coordinate: usize,
+) -> Result<Vec<Vec<[f64; 2]>>> {
     const POSTURES: usize = 65;
-    let line = |i: usize| {
+    let line = |i: usize| -> Result<Vec<[f64; 2]>> {
         let course: Course = primitive.at(primitive.point(i))?;
         let at = |k: usize| k as f64 / (POSTURES - 1) as f64;
         let point = |k: usize| Ok([at(k), paper.place(&course.pose(at(k)))?[coordinate]]);
@@ -165,7 +176,12 @@ impl Relaxation {
         let ends = m.low.iter().zip(&m.high);
         paper::Mixture {
             joint: format!("{} (rad)", self.names[which]),
-            envelope: m.phases.iter().zip(ends).map(|(t, (l, h))| [*t, *l, *h]).collect(),
+            envelope: m
+                .phases
+                .iter()
+                .zip(ends)
+                .map(|(t, (l, h))| [*t, *l, *h])
+                .collect(),
             exemplars: self.exemplars[which].clone(),
             intervals: self.intervals.clone(),
             ..paper::Mixture::default()
@@ -211,7 +227,7 @@ impl Relaxation {
             }
         }
         let first = self.parameters.first().map_or("p", String::as_str);
-        let others = self.parameters[1..].join(", ");
+        let others = self.parameters.get(1..).unwrap_or_default().join(", ");
         paper::ParameterSet {
             name: match others.is_empty() {
                 true => first.to_string(),
@@ -263,7 +279,11 @@ impl Relaxation {
         let own = |p: &Patch| {
             let [low, high] = p.bounds[0];
             let (low, high) = (low - delta, high + delta);
-            if (low..=high).contains(&x) { 1.0 / (high - low) } else { 0.0 }
+            if (low..=high).contains(&x) {
+                1.0 / (high - low)
+            } else {
+                0.0
+            }
         };
         self.exact.iter().map(own).sum::<f64>() / self.exact.len().max(1) as f64
     }
@@ -271,7 +291,11 @@ impl Relaxation {
 
 fn shown(intervals: &[[f64; 2]]) -> String {
     let one = |i: &[f64; 2]| format!("[{:.2}, {:.2}]", i[0], i[1]);
-    intervals.iter().map(one).collect::<Vec<_>>().join(" \u{222a} ")
+    intervals
+        .iter()
+        .map(one)
+        .collect::<Vec<_>>()
+        .join(" \u{222a} ")
 }
 
 /// The bandwidth of Silverman (1986, equation 3.31): 0.9 min(deviation, quartiles' distance / 1.34) n^(-1/5).

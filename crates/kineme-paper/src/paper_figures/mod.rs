@@ -39,10 +39,22 @@ pub const NAMES: [&str; 7] = [
 
 /// The sets of primitives of section V-C: three that it names, and the waving of Figure 2.
 const SETS: [(&str, &str); 4] = [
-    ("vertical-waving.toml", include_str!("../../../../choreography/vertical-waving.toml")),
-    ("punching.toml", include_str!("../../../../choreography/punching.toml")),
-    ("twist.toml", include_str!("../../../../choreography/twist.toml")),
-    ("horizontal-waving.toml", include_str!("../../../../choreography/horizontal-waving.toml")),
+    (
+        "vertical-waving.toml",
+        include_str!("../../../../choreography/vertical-waving.toml"),
+    ),
+    (
+        "punching.toml",
+        include_str!("../../../../choreography/punching.toml"),
+    ),
+    (
+        "twist.toml",
+        include_str!("../../../../choreography/twist.toml"),
+    ),
+    (
+        "horizontal-waving.toml",
+        include_str!("../../../../choreography/horizontal-waving.toml"),
+    ),
 ];
 
 /// The kinds of file of each figure; without the feature `png` there is SVG alone.
@@ -53,7 +65,12 @@ const KINDS: &[&str] = match cfg!(feature = "png") {
 
 /// The names of the files that [`write`] writes.
 pub fn files() -> Vec<String> {
-    let both = |name: &&str| KINDS.iter().map(move |kind| format!("{name}.{kind}")).collect::<Vec<_>>();
+    let both = |name: &&str| {
+        KINDS
+            .iter()
+            .map(move |kind| format!("{name}.{kind}"))
+            .collect::<Vec<_>>()
+    };
     NAMES.iter().flat_map(both).collect()
 }
 
@@ -100,7 +117,7 @@ pub fn write(figures: &[String; 7], folder: &Path, existing: Existing) -> Result
 
 /// What is in the files, in the order of [`files`].
 fn contents(figures: &[String; 7]) -> Result<Vec<Vec<u8>>> {
-    let of = |svg: &String| {
+    let of = |svg: &String| -> Result<Vec<Vec<u8>>> {
         #[cfg_attr(not(feature = "png"), expect(unused_mut))]
         let mut both = vec![svg.clone().into_bytes()];
         #[cfg(feature = "png")]
@@ -124,14 +141,19 @@ pub(crate) fn vocabulary(names: &[&str], body: &Arc<Skeleton>) -> Result<Vocabul
     let chosen: Vec<_> = SETS.iter().filter(|(n, _)| names.contains(n)).collect();
     let sets: Vec<Vocabulary> = chosen
         .par_iter()
-        .map(|(name, text)| {
+        .map(|&&(name, text)| {
             let script = script::parse(name, text.as_bytes())?;
             Ok(script.vocabulary(body, &Modelling::default(), (name, None))?)
         })
         .collect::<Result<_>>()?;
     let primitives: Vec<_> = sets.iter().flat_map(|v| v.primitives().to_vec()).collect();
     let none = Transitions::none(primitives.len());
-    Ok(Vocabulary::new(Arc::clone(body), primitives, Vec::new(), none)?)
+    Ok(Vocabulary::new(
+        Arc::clone(body),
+        primitives,
+        Vec::new(),
+        none,
+    )?)
 }
 
 /// The names of all sets.

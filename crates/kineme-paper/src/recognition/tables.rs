@@ -23,11 +23,23 @@ const DAMAGED: usize = 8;
 const CALIBRATED: f64 = 0.05;
 
 /// Recognises every set of a corpus and writes what came of it, as Markdown. `watch` is told what is being done, and the
-/// tables one by one as they are made.
+/// tables one by one as they are made. With `only`, nothing is done but the stages in whose name (`HDM05: few
+/// exemplars`, as `watch` hears it) that word is.
 ///
 /// # Errors
 /// When the corpus lacks a file or a step fails.
-pub fn perception_tables(corpus: &Path, watch: &mut dyn FnMut(&str)) -> Result<String> {
+pub fn perception_tables(
+    corpus: &Path,
+    only: Option<&str>,
+    watch: &mut dyn FnMut(&str),
+) -> Result<String> {
+    let begin = |stage: String, watch: &mut dyn FnMut(&str)| {
+        let wanted = only.is_none_or(|word| stage.contains(word));
+        if wanted {
+            watch(&stage);
+        }
+        wanted
+    };
     let body = Arc::new(kineme::ares()?);
     let peers = Peers::kept()?;
     watch("reading");
@@ -37,7 +49,9 @@ pub fn perception_tables(corpus: &Path, watch: &mut dyn FnMut(&str)) -> Result<S
     let mut details = String::new();
     let mut calibration = Vec::new();
     for of in &sets {
-        watch(&format!("{}: whole clips", of.name));
+        if !begin(format!("{}: whole clips", of.name), watch) {
+            continue;
+        }
         let asked = Asked::of(of, &METHODS)?;
         let [all, by_hands] = lines(of, &asked)?;
         whole.push(all);
@@ -45,22 +59,27 @@ pub fn perception_tables(corpus: &Path, watch: &mut dyn FnMut(&str)) -> Result<S
         calibration.push((of.name, asked.calibration_error(Method::Filter)?));
         tell(&mut details, watch, |t| write_clips(t, of, &asked))?;
     }
-    watch("exercises");
-    rest.push(Exercises::read(corpus, &body)?.line()?);
-    watch(&format!("{:?}", rest.last()));
+    if begin("exercises".into(), watch) {
+        rest.push(Exercises::read(corpus, &body)?.line()?);
+        watch(&format!("{:?}", rest.last()));
+    }
     let pair = [Method::Filter, Method::Dtw];
     let learned_few: Vec<_> = sets
         .iter()
         .filter(|c| [UTD, HDM05].contains(&c.name))
         .collect();
     for of in &learned_few {
-        watch(&format!("{}: half of the classes unknown", of.name));
+        if !begin(format!("{}: half of the classes unknown", of.name), watch) {
+            continue;
+        }
         let all = rejections(of, &pair)?;
         let write = |t: &mut String| write_rejections(t, of, &pair, &all);
         rest.extend(tell(&mut details, watch, write)?);
     }
     for of in &learned_few {
-        watch(&format!("{}: few exemplars", of.name));
+        if !begin(format!("{}: few exemplars", of.name), watch) {
+            continue;
+        }
         for shots in SHOTS {
             rest.push(few_shots(of, shots, pair[0], pair[1])?);
             watch(&format!("{:?}", rest.last()));
@@ -69,14 +88,18 @@ pub fn perception_tables(corpus: &Path, watch: &mut dyn FnMut(&str)) -> Result<S
     let dances = dances(corpus, &body)?;
     let listeners = [Method::Filter, Method::Frame, Method::Dtw];
     for of in sets.iter().filter(|c| c.name != BANDAI_NAMCO) {
-        watch(&format!("{}: streams", of.name));
+        if !begin(format!("{}: streams", of.name), watch) {
+            continue;
+        }
         let heard = hear(of, &dances, &listeners)?;
         let write = |t: &mut String| write_streams(t, of, &listeners, &heard);
         tell(&mut details, watch, write)?;
     }
     let hurt = [Method::Filter, Method::Frame, Method::Paper, Method::Dtw];
     for of in &learned_few {
-        watch(&format!("{}: damaged", of.name));
+        if !begin(format!("{}: damaged", of.name), watch) {
+            continue;
+        }
         let right = costs(of, &hurt, DAMAGED)?;
         tell(&mut details, watch, |t| write_costs(t, of, &hurt, &right))?;
     }

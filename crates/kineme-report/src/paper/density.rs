@@ -43,10 +43,10 @@ pub fn density(figure: &Density) -> String {
     svg.text(MARGIN, 46.0, Anchor::Start, SMALL, &figure.subtitle);
     let bars = field_swatch("class=\"heat\" fill-opacity=\"0.38\"");
     let kernel = line_swatch("class=\"right\" fill=\"none\" stroke-width=\"2\"");
-    let exact = field_swatch(
-        "fill=\"#009e73\" fill-opacity=\"0.3\" stroke=\"#009e73\" stroke-width=\"2\"",
-    );
-    let uniform = line_swatch("class=\"chain\" stroke-dasharray=\"2 3\" style=\"stroke-width:1.6\"");
+    let exact =
+        field_swatch("fill=\"#009e73\" fill-opacity=\"0.3\" stroke=\"#009e73\" stroke-width=\"2\"");
+    let uniform =
+        line_swatch("class=\"chain\" stroke-dasharray=\"2 3\" style=\"stroke-width:1.6\"");
     legend(
         &mut svg,
         [MARGIN, 70.0],

@@ -54,16 +54,30 @@ pub struct EncodedPaths {
 const WIDTH: f64 = 960.0;
 const NAMES: f64 = 118.0;
 const ROW: f64 = 24.0;
-const OBSERVED: &str = "class=\"frame\" style=\"stroke-width:3.6\" stroke-linejoin=\"round\" stroke-linecap=\"round\"";
-const ENCODED: &str = "class=\"right\" fill=\"none\" stroke-width=\"1.9\" stroke-linejoin=\"round\"";
-const PREDICTED: &str = "fill=\"none\" stroke-width=\"1.1\" stroke-opacity=\"0.75\" stroke-dasharray=\"3 2\"";
+const OBSERVED: &str =
+    "class=\"frame\" style=\"stroke-width:3.6\" stroke-linejoin=\"round\" stroke-linecap=\"round\"";
+const ENCODED: &str =
+    "class=\"right\" fill=\"none\" stroke-width=\"1.9\" stroke-linejoin=\"round\"";
+const PREDICTED: &str =
+    "fill=\"none\" stroke-width=\"1.1\" stroke-opacity=\"0.75\" stroke-dasharray=\"3 2\"";
 
 /// The path over time with every primitive's prediction from each decision on, the same seen from the front, and under
 /// them a row of bars a primitive: how like the prediction was, the winner's filled.
 pub fn encoded_paths(figure: &EncodedPaths) -> String {
     let ends = figure.decisions.iter().flat_map(|d| [d.start, d.end]);
-    let predicted = || figure.decisions.iter().flat_map(|d| d.predicted.iter().flatten());
-    let lines = || figure.observed.iter().chain(&figure.encoded).chain(predicted());
+    let predicted = || {
+        figure
+            .decisions
+            .iter()
+            .flat_map(|d| d.predicted.iter().flatten())
+    };
+    let lines = || {
+        figure
+            .observed
+            .iter()
+            .chain(&figure.encoded)
+            .chain(predicted())
+    };
     let (Some(time), Some(value)) = (extent(ends), extent(lines().map(|p| p[1]))) else {
         return nothing(&figure.title, "There is no decision to show.");
     };
@@ -91,7 +105,10 @@ fn draw_key(svg: &mut Svg) {
     for (look, name) in [
         (OBSERVED, "observed"),
         (ENCODED, "encoded"),
-        (dashed.as_str(), "predicted by each primitive from each decision on"),
+        (
+            dashed.as_str(),
+            "predicted by each primitive from each decision on",
+        ),
     ] {
         svg.polyline(look, &[[x, 66.0], [x + 26.0, 66.0]]);
         svg.text(x + 32.0, 70.0, Anchor::Start, LABEL, name);
@@ -145,7 +162,7 @@ fn draw_view(svg: &mut Svg, figure: &EncodedPaths) {
         around(y, edges[3] - edges[1]),
         edges,
     );
-    plot.draw(svg, &figure.view_axes[0], &figure.view_axes[1], [4, 5]);
+    plot.draw(svg, &figure.view_axes[0], &figure.view_axes[1], [5, 6]);
     svg.polyline(OBSERVED, &plot.curve(&figure.observed_view));
     svg.polyline(ENCODED, &plot.curve(&figure.encoded_view));
     for decision in &figure.decisions {
@@ -164,7 +181,12 @@ fn draw_bars(svg: &mut Svg, figure: &EncodedPaths, plot: &Plot, top: f64) -> f64
         class: "soft",
         ..HEAD
     };
-    svg.rectangle("class=\"panel\"", [left, top], [right - left, bottom - top], "");
+    svg.rectangle(
+        "class=\"panel\"",
+        [left, top],
+        [right - left, bottom - top],
+        "",
+    );
     for (k, name) in figure.names.iter().enumerate() {
         let base = top + ROW * (k + 1) as f64;
         svg.line("grid", [left, base], [right, base]);
@@ -183,18 +205,50 @@ fn draw_bars(svg: &mut Svg, figure: &EncodedPaths, plot: &Plot, top: f64) -> f64
             svg.rectangle(&look, [a + 0.8, base - high], [b - a - 1.6, high], &tooltip);
         }
     }
-    svg.rectangle("class=\"frame\"", [left, top], [right - left, bottom - top], "");
-    svg.text(right + 14.0, top + 14.0, Anchor::Start, head, "likeness of each");
-    svg.text(right + 14.0, top + 29.0, Anchor::Start, head, "primitive's prediction");
-    svg.text(right + 14.0, top + 46.0, Anchor::Start, SMALL, "full height = 1;");
-    svg.text(right + 14.0, top + 60.0, Anchor::Start, SMALL, "filled: takes the decision");
+    svg.rectangle(
+        "class=\"frame\"",
+        [left, top],
+        [right - left, bottom - top],
+        "",
+    );
+    svg.text(
+        right + 14.0,
+        top + 54.0,
+        Anchor::Start,
+        head,
+        "likeness of each",
+    );
+    svg.text(
+        right + 14.0,
+        top + 69.0,
+        Anchor::Start,
+        head,
+        "primitive's prediction",
+    );
+    svg.text(
+        right + 14.0,
+        top + 88.0,
+        Anchor::Start,
+        SMALL,
+        "full height = 1;",
+    );
+    svg.text(
+        right + 14.0,
+        top + 103.0,
+        Anchor::Start,
+        SMALL,
+        "filled: takes the decision",
+    );
     let mut y = bottom + 8.0;
     let taken: Vec<(f64, f64, usize)> = figure
         .decisions
         .iter()
         .map(|d| (d.start, d.end, d.winner))
         .collect();
-    for (what, spans) in [("encoded as", joined(&taken)), ("really done", figure.truth.clone())] {
+    for (what, spans) in [
+        ("encoded as", joined(&taken)),
+        ("really done", figure.truth.clone()),
+    ] {
         svg.text(left - 8.0, y + 13.0, Anchor::End, LABEL, what);
         for (start, end, k) in spans {
             let [a, b] = [start, end].map(|t| plot.x.at(t).min(right));
@@ -202,7 +256,11 @@ fn draw_bars(svg: &mut Svg, figure: &EncodedPaths, plot: &Plot, top: f64) -> f64
             svg.rectangle(&fill, [a + 0.5, y], [b - a - 1.0, 18.0], "");
             let name = figure.names.get(k).map_or("", String::as_str);
             let look = Type {
-                class: if text_on(k) == "#000" { "on-light" } else { "on-dark" },
+                class: if text_on(k) == "#000" {
+                    "on-light"
+                } else {
+                    "on-dark"
+                },
                 ..LABEL
             };
             if text_width(name, LABEL.size) * 0.9 < b - a - 4.0 {
@@ -214,7 +272,13 @@ fn draw_bars(svg: &mut Svg, figure: &EncodedPaths, plot: &Plot, top: f64) -> f64
     for (value, label) in plot.x.ticks(8) {
         svg.text(plot.x.at(value), y + 10.0, Anchor::Middle, SMALL, &label);
     }
-    svg.text(0.5 * (left + right), y + 27.0, Anchor::Middle, LABEL, "time (s)");
+    svg.text(
+        0.5 * (left + right),
+        y + 27.0,
+        Anchor::Middle,
+        LABEL,
+        "time (s)",
+    );
     y + 38.0
 }
 

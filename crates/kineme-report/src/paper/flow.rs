@@ -107,7 +107,11 @@ pub fn flow(figure: &Flow) -> String {
     draw_sticks(&mut svg, &plot, &figure.above, top - STICK - 4.0, true);
     let under = bottom + 44.0;
     draw_sticks(&mut svg, &plot, &figure.below, under, false);
-    let room = if figure.below.is_empty() { 0.0 } else { STICK + 8.0 };
+    let room = if figure.below.is_empty() {
+        0.0
+    } else {
+        STICK + 8.0
+    };
     svg.finish(Some(under + room))
 }
 
@@ -121,10 +125,22 @@ fn draw_ramp(svg: &mut Svg) {
     }
     svg.text(start + 168.0, y + 10.0, Anchor::Start, LABEL, "1");
     let (x, y) = (start + 206.0, y + 5.5);
-    svg.polyline("class=\"right\" fill=\"none\" stroke-width=\"3.4\"", &[[x, y], [x + 24.0, y]]);
+    svg.polyline(
+        "class=\"right\" fill=\"none\" stroke-width=\"3.4\"",
+        &[[x, y], [x + 24.0, y]],
+    );
     svg.text(x + 30.0, y + 4.5, Anchor::Start, LABEL, "exemplars");
-    svg.polyline("class=\"chain\" stroke-dasharray=\"2 3\"", &[[x + 110.0, y], [x + 134.0, y]]);
-    svg.text(x + 140.0, y + 4.5, Anchor::Start, LABEL, "postures of two of them");
+    svg.polyline(
+        "class=\"chain\" stroke-dasharray=\"2 3\"",
+        &[[x + 110.0, y], [x + 134.0, y]],
+    );
+    svg.text(
+        x + 140.0,
+        y + 4.5,
+        Anchor::Start,
+        LABEL,
+        "postures of two of them",
+    );
 }
 
 fn draw_arrow(svg: &mut Svg, plot: &Plot, arrow: &Arrow) {
@@ -164,7 +180,10 @@ fn draw_exemplar(svg: &mut Svg, plot: &Plot, way: &[([f64; 2], f64)]) {
     let bold = "class=\"right\" fill=\"none\" stroke-width=\"3.4\" stroke-linejoin=\"round\" stroke-linecap=\"round\"";
     svg.polyline(bold, &points);
     for (pair, (_, phase)) in points.windows(2).zip(way) {
-        let core = format!("fill=\"none\" stroke=\"{}\" stroke-width=\"1.1\"", phase_colour(*phase));
+        let core = format!(
+            "fill=\"none\" stroke=\"{}\" stroke-width=\"1.1\"",
+            phase_colour(*phase)
+        );
         svg.polyline(&core, pair);
     }
 }
@@ -183,13 +202,21 @@ fn draw_sticks(svg: &mut Svg, plot: &Plot, sticks: &[Stick], top: f64, above: bo
     let scale = (tall / (y[1] - y[0]).max(1e-6)).min((slot - 8.0) / (x[1] - x[0]).max(1e-6));
     for (k, stick) in sticks.iter().enumerate() {
         let middle = left + (k as f64 + 0.5) * slot;
-        let foot = if above { top + tall } else { top + STICK - 10.0 };
+        let foot = if above {
+            top + tall
+        } else {
+            top + STICK - 10.0
+        };
         let place = |p: &[f64; 2]| {
             let across = p[0] - 0.5 * (x[0] + x[1]);
             [middle + scale * across, foot - scale * (p[1] - y[0])]
         };
         // Joined at the edge that faces the field.
-        let end = if above { [middle, foot + 4.0] } else { [middle, top + 8.0] };
+        let end = if above {
+            [middle, foot + 4.0]
+        } else {
+            [middle, top + 8.0]
+        };
         let target = plot.at(stick.at);
         svg.polyline("class=\"chain\" stroke-dasharray=\"2 3\"", &[end, target]);
         let colour = phase_colour(stick.phase);
@@ -197,12 +224,18 @@ fn draw_sticks(svg: &mut Svg, plot: &Plot, sticks: &[Stick], top: f64, above: bo
         svg.disc(&dot, target, 5.0);
         let still = stick.bones.len().saturating_sub(stick.moving);
         let round = "fill=\"none\" stroke-linecap=\"round\"";
-        svg.open(&format!("class=\"axis\" {round} style=\"stroke-width:2.2\""), "");
+        svg.open(
+            &format!("class=\"axis\" {round} style=\"stroke-width:2.2\""),
+            "",
+        );
         for bone in &stick.bones[..still] {
             svg.polyline("", &bone.each_ref().map(place));
         }
         svg.close();
-        svg.open(&format!("class=\"right\" {round} style=\"stroke-width:3.4\""), "");
+        svg.open(
+            &format!("class=\"right\" {round} style=\"stroke-width:3.4\""),
+            "",
+        );
         for bone in &stick.bones[still..] {
             svg.polyline("", &bone.each_ref().map(place));
         }
@@ -213,6 +246,12 @@ fn draw_sticks(svg: &mut Svg, plot: &Plot, sticks: &[Stick], top: f64, above: bo
             ..SMALL
         };
         let beside = middle + 0.5 * scale * (x[1] - x[0]) + 2.0;
-        svg.text(beside.min(right - 40.0), foot - 4.0, Anchor::Start, look, &label);
+        svg.text(
+            beside.min(right - 40.0),
+            foot - 4.0,
+            Anchor::Start,
+            look,
+            &label,
+        );
     }
 }

@@ -102,8 +102,13 @@ fn draw_edge(svg: &mut Svg, edge: &Edge) {
     if let Some(last) = corners.last_mut() {
         *last = base;
     }
-    let dash = if edge.optional { "stroke-dasharray=\"5 4\"" } else { "" };
-    let line = format!("class=\"axis\" {dash} style=\"stroke-width:1.6\" stroke-linejoin=\"round\"");
+    let dash = if edge.optional {
+        "stroke-dasharray=\"5 4\""
+    } else {
+        ""
+    };
+    let line =
+        format!("class=\"axis\" {dash} style=\"stroke-width:1.6\" stroke-linejoin=\"round\"");
     svg.polyline(&line, &corners);
     let side = |s: f64| [base[0] - s * 4.5 * uy, base[1] + s * 4.5 * ux];
     let [l, r] = [side(1.0), side(-1.0)];

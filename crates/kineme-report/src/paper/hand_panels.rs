@@ -53,14 +53,19 @@ pub fn hand_panels(panels: &[HandPanel]) -> String {
     svg.finish(Some(bottom + 16.0))
 }
 
-const BOLD: &str = "fill=\"none\" stroke-width=\"1.9\" stroke-linejoin=\"round\" stroke-linecap=\"round\"";
-const THIN: &str = "fill=\"none\" stroke-width=\"0.9\" stroke-opacity=\"0.45\" stroke-dasharray=\"4 2\"";
+const BOLD: &str =
+    "fill=\"none\" stroke-width=\"1.9\" stroke-linejoin=\"round\" stroke-linecap=\"round\"";
+const THIN: &str =
+    "fill=\"none\" stroke-width=\"0.9\" stroke-opacity=\"0.45\" stroke-dasharray=\"4 2\"";
 
 fn draw_key(svg: &mut Svg) {
     let mut x = MARGIN;
     for (class, hand) in [("right", "right hand"), ("left", "left hand")] {
         for (look, what) in [(BOLD, ""), (THIN, ", interpolated")] {
-            svg.polyline(&format!("class=\"{class}\" {look}"), &[[x, 46.0], [x + 24.0, 46.0]]);
+            svg.polyline(
+                &format!("class=\"{class}\" {look}"),
+                &[[x, 46.0], [x + 24.0, 46.0]],
+            );
             let name = format!("{hand}{what}");
             svg.text(x + 30.0, 50.0, Anchor::Start, LABEL, &name);
             x += 52.0 + crate::svg::text_width(&name, LABEL.size) * 0.94;
@@ -83,12 +88,17 @@ impl Frame {
     fn around(panels: &[HandPanel]) -> Option<Self> {
         let points = || {
             let of = |p: &'_ HandPanel| {
-                [&p.right, &p.left, &p.right_interpolated, &p.left_interpolated]
-                    .into_iter()
-                    .flatten()
-                    .flatten()
-                    .copied()
-                    .collect::<Vec<[f64; 3]>>()
+                [
+                    &p.right,
+                    &p.left,
+                    &p.right_interpolated,
+                    &p.left_interpolated,
+                ]
+                .into_iter()
+                .flatten()
+                .flatten()
+                .copied()
+                .collect::<Vec<[f64; 3]>>()
             };
             panels.iter().flat_map(of)
         };
@@ -139,7 +149,11 @@ fn draw_panel(svg: &mut Svg, corner: [f64; 2], height: f64, panel: &HandPanel, f
     svg.text(left + 12.0, top + 20.0, Anchor::Start, HEAD, &title);
     svg.text(left + 12.0, top + 36.0, Anchor::Start, SMALL, &panel.facts);
     let divide = left + frame.front;
-    svg.line("grid", [divide, top + HEADER], [divide, top + height - 12.0]);
+    svg.line(
+        "grid",
+        [divide, top + HEADER],
+        [divide, top + height - 12.0],
+    );
     for view in 0..2 {
         let [x, y] = frame.pixel(view, corner, &[0.0; 3]);
         svg.line("axis", [x - 5.0, y], [x + 5.0, y]);

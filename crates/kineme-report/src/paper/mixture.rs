@@ -60,7 +60,11 @@ pub fn mixture(figure: &Mixture) -> String {
         return nothing(&figure.title, "There is no joint to show.");
     };
     let pad = 0.06 * (range[1] - range[0]);
-    let tall = if figure.parameters.is_some() { 300.0 } else { 360.0 };
+    let tall = if figure.parameters.is_some() {
+        300.0
+    } else {
+        360.0
+    };
     let top = 92.0;
     let mut svg = Svg::new(WIDTH, 0.0, &figure.title);
     svg.text(MARGIN, 46.0, Anchor::Start, SMALL, &figure.subtitle);

@@ -91,11 +91,7 @@ pub fn outline(points: &[[f64; 2]]) -> String {
 }
 
 /// Entries of a legend in one row: a swatch drawn at its left middle, and its name.
-pub fn legend(
-    svg: &mut Svg,
-    [x, y]: [f64; 2],
-    entries: &[(&dyn Fn(&mut Svg, [f64; 2]), &str)],
-) {
+pub fn legend(svg: &mut Svg, [x, y]: [f64; 2], entries: &[(&dyn Fn(&mut Svg, [f64; 2]), &str)]) {
     let mut at = x;
     for (swatch, name) in entries {
         swatch(svg, [at, y]);

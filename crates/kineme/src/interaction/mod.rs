@@ -1,12 +1,10 @@
 //! Floor 6: observe, recognise, answer: the one place that sees control and perception both.
 //!
-//! A [`Session`] runs a plan on a robot, tick by tick: what the robot watches goes through a recogniser, what is noticed
+//! A [`Session`] runs a plan on a robot, tick by tick: what the robot watches goes through a recogniser, what is announced
 //! triggers the plan's rules, what the controller commands goes to the robot, and what the robot feels comes back.
 
-mod attention;
 mod performance;
 mod session;
 
-pub use attention::Attention;
 pub use performance::{Noticed, Performance, Tracking};
 pub use session::{Session, SessionSettings, standing};

@@ -1,18 +1,36 @@
 //! [`Session`]: a plan on a robot, tick by tick.
 
-use super::attention::{Attending, Attention};
 use super::performance::{Noticed, Performance, Record};
 use crate::control::{Command, Controller, Percept, Plan, Robot, Sensed, State};
 use crate::error::{Error, Result};
+use crate::perception::{Alarm, AlarmSettings};
 use crate::primitive::{Listener, Observation, Observations, Reading, Recogniser, Vocabulary};
 use crate::retargeting::Transfer;
 use crate::skeleton::Root;
 
 /// How a session goes.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SessionSettings {
-    /// When what is watched counts as noticed.
-    pub attention: Attention,
+    /// When what is watched is worth an answer. Quicker than an alarm by itself is: a wrong answer costs a movement, a
+    /// late one a blow.
+    pub alarm: AlarmSettings,
+}
+
+impl Default for SessionSettings {
+    fn default() -> Self {
+        Self {
+            alarm: AlarmSettings {
+                memory_secs: 0.1,
+                ..AlarmSettings::default()
+            },
+        }
+    }
+}
+
+/// What is watched, and what of it is announced.
+struct Watching<'a> {
+    listener: Box<dyn Listener + 'a>,
+    alarm: Alarm,
 }
 
 /// A robot of another body than the vocabulary's: commands go one way, what it feels the other.
@@ -33,8 +51,7 @@ pub struct Session<'a> {
     controller: Controller<'a>,
     robot: &'a mut dyn Robot,
     bodies: Option<Bodies>,
-    listener: Option<Box<dyn Listener + 'a>>,
-    attending: Attending,
+    watching: Option<Watching<'a>>,
     noticed: Option<usize>,
     told: Command,
     root: Root,
@@ -55,7 +72,13 @@ impl<'a> Session<'a> {
         recogniser: Option<&'a dyn Recogniser>,
         settings: &SessionSettings,
     ) -> Result<Self> {
-        settings.attention.check()?;
+        let watching = match recogniser {
+            Some(recogniser) => Some(Watching {
+                listener: recogniser.listen(),
+                alarm: Alarm::new(recogniser.vocabulary().primitives().len(), &settings.alarm)?,
+            }),
+            None => None,
+        };
         let body = controller.body();
         let bodies = if **robot.body() == **body {
             None
@@ -74,8 +97,7 @@ impl<'a> Session<'a> {
             controller,
             robot,
             bodies,
-            listener: recogniser.map(|r| r.listen()),
-            attending: Attending::new(settings.attention),
+            watching,
             noticed: None,
             told: first.clone(),
             root: first.root,
@@ -118,12 +140,12 @@ impl<'a> Session<'a> {
     /// # Errors
     /// Without a recogniser, or when the posture is not of its body or not later than the one before.
     pub fn observe(&mut self, seen: &Observation<'_>) -> Result<Reading> {
-        let listener = self
-            .listener
+        let watching = self
+            .watching
             .as_mut()
             .ok_or_else(|| Error::invalid("nothing recognises what is watched"))?;
-        let reading = listener.hear(seen)?;
-        let now = self.attending.attend(seen.secs, &reading);
+        let reading = watching.listener.hear(seen)?;
+        let now = watching.alarm.hear(seen.secs, &reading.posterior)?;
         if now != self.noticed {
             self.noticed = now;
             self.record.noticed.push(Noticed {
@@ -139,7 +161,7 @@ impl<'a> Session<'a> {
     /// # Errors
     /// When the robot cannot: a simulation that diverges.
     pub fn tick(&mut self) -> Result<()> {
-        let percept = self.listener.is_some().then_some(Percept {
+        let percept = self.watching.is_some().then_some(Percept {
             primitive: self.noticed,
         });
         let sensed = self.felt();

@@ -1,5 +1,6 @@
 //! Floor 5: recognising movement with the same vocabulary that makes it (paper, section V).
 
+mod alarm;
 mod calibration;
 mod checked;
 pub mod encoding;
@@ -10,6 +11,7 @@ mod parts;
 mod rows;
 mod spans;
 
+pub use alarm::{Alarm, AlarmSettings};
 pub use calibration::calibrated;
 pub use filter::{Filter, FilterSettings};
 pub use frame::{Frame, FrameSettings, Patch};

@@ -10,7 +10,8 @@ use kineme::control::{
     Arbitration, ControlSettings, Controller, KinematicRobot, Place, Plan, Planned, Robot, Rule,
     Sensed,
 };
-use kineme::interaction::{Attention, Performance, Session, SessionSettings, standing};
+use kineme::interaction::{Performance, Session, SessionSettings, standing};
+use kineme::perception::AlarmSettings;
 use kineme::primitive::{
     Listener, Observation, Observations, Posterior, Reading, Recogniser, Recognition,
 };
@@ -112,7 +113,6 @@ fn what_lasts_is_answered_once_each_time_and_soon() {
     let plan = plan(Vec::new(), rules.into());
     let mut robot = KinematicRobot::new(Arc::clone(vocabulary.body()));
     let performance = perform(&vocabulary, &plan, &mut robot, Some(&watched));
-    let sustain = Attention::default().sustain_secs;
     let answers: Vec<(Place, f64)> = performance
         .ran
         .iter()
@@ -122,8 +122,7 @@ fn what_lasts_is_answered_once_each_time_and_soon() {
     assert_eq!(answers.len(), 2, "{answers:?}");
     for ((place, at), shown) in answers.into_iter().zip([0.5, 2.0]) {
         assert_eq!(place, Place::Rule(0));
-        let late = at - (shown + sustain);
-        assert!((0.0..0.1 + 2.0 * tick).contains(&late), "{at}");
+        assert!((shown..shown + 0.2 + 2.0 * tick).contains(&at), "{at}");
     }
     let noticed: Vec<Option<usize>> = performance.noticed.iter().map(|n| n.primitive).collect();
     assert_eq!(noticed, [Some(2), None, Some(2)]);
@@ -246,24 +245,22 @@ fn a_session_that_cannot_be_is_refused() {
     let plan = plan(vec![Planned::new("reach")], Vec::new());
     let start = standing(&vocabulary, &plan).expect("a start");
     let settings = ControlSettings::default();
-    for attention in [
-        Attention {
-            notice: 1.5,
-            ..Attention::default()
-        },
-        Attention {
-            release: 0.9,
-            ..Attention::default()
-        },
-        Attention {
-            sustain_secs: f64::NAN,
-            ..Attention::default()
-        },
-    ] {
+    for (memory_secs, raise, release) in [(0.1, 1.5, 0.3), (0.1, 0.6, 0.9), (0.0, 0.6, 0.3)] {
+        let alarm = AlarmSettings {
+            memory_secs,
+            raise,
+            release,
+        };
         let controller = Controller::new(&vocabulary, &plan, &start, &settings).expect("a plan");
         let mut robot = KinematicRobot::new(Arc::clone(vocabulary.body()));
-        let made = Session::new(controller, &mut robot, None, &SessionSettings { attention });
-        assert!(made.is_err(), "{attention:?}");
+        let told = Told(&vocabulary);
+        let made = Session::new(
+            controller,
+            &mut robot,
+            Some(&told),
+            &SessionSettings { alarm },
+        );
+        assert!(made.is_err(), "{memory_secs} {raise} {release}");
     }
     let controller = Controller::new(&vocabulary, &plan, &start, &settings).expect("a plan");
     let mut robot = KinematicRobot::new(Arc::clone(vocabulary.body()));

@@ -126,7 +126,10 @@ impl Course<'_> {
         let end = self.seen.instants.len() - 1;
         let k = (at.floor() as usize).min(end);
         let share = at - k as f64;
-        let (a, b) = (&self.seen.instants[k], &self.seen.instants[(k + 1).min(end)]);
+        let (a, b) = (
+            &self.seen.instants[k],
+            &self.seen.instants[(k + 1).min(end)],
+        );
         let pairs = a.iter().zip(b);
         pairs
             .map(|(a, b)| match share > 1e-9 {

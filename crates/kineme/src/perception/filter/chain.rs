@@ -2,9 +2,9 @@
 
 use super::rows::Row;
 
-/// A movement may be done at half to twice the pace of its row.
-const SLOWEST: f64 = 0.5;
-const FASTEST: f64 = 2.0;
+/// A movement may be done at two fifths to five halves of the pace of its row.
+const SLOWEST: f64 = 0.4;
+const FASTEST: f64 = 2.5;
 /// Paces at which the advance is looked at.
 const PACES: usize = 17;
 
@@ -17,7 +17,7 @@ pub(super) struct Kernel {
 }
 
 impl Kernel {
-    /// The advance in `secs`: paces log-uniform between half and double, spread over the two moments between which
+    /// The advance in `secs`: paces log-uniform between the slowest and the fastest, spread over the two moments between which
     /// each comes to lie.
     pub fn of(row: &Row, secs: f64) -> Self {
         let advance = |k: usize| {

@@ -23,6 +23,13 @@ pub(super) struct Evidence {
     pub secs: f64,
 }
 
+impl Evidence {
+    /// Seconds that evidence is divided by, however short the clip.
+    pub fn lasts(&self) -> f64 {
+        self.secs.max(0.1)
+    }
+}
+
 /// The forward pass over all rows, each by itself: the row is held through the clip.
 ///
 /// `moments` are features and the seconds since the one before. The likelihood is tempered (its unit is a second of

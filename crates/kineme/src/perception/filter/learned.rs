@@ -11,6 +11,8 @@ use crate::primitive::{Calibration, Observations, ParameterSource, Vocabulary};
 
 /// The name under which a vocabulary keeps it.
 pub(super) const NAME: &str = "filter";
+/// The first number kept: what the others mean has changed since they were first kept.
+const EDITION: f64 = 2.0;
 /// Scores by which the unknown is told.
 pub(super) const SCORES: usize = 5;
 /// At most so many exemplars are left out, and at most so many moments of rows are compared for it.
@@ -29,7 +31,8 @@ const MARGIN: f64 = 1.0;
 /// Plain numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Learned {
-    /// Log-likelihoods of clips are divided by it.
+    /// Log-likelihoods a second of clips are divided by it: how somebody differs lasts through a clip, so that a longer
+    /// one tells hardly more.
     pub temperature: f64,
     /// Mean and deviation of each score, and its weight in the logarithm of the odds of being unknown.
     pub scores: [[f64; 3]; SCORES],
@@ -42,21 +45,20 @@ pub(super) struct Learned {
 }
 
 impl Learned {
-    /// What holds as long as nothing was learned: temperature and limit as vocabularies of real people have them (28 to
-    /// 56, and about 200), and nothing by which the unknown is told but the stream.
+    /// What holds as long as nothing was learned: means of real vocabularies.
     pub fn usual(primitives: usize) -> Self {
         Self {
-            temperature: 40.0,
+            temperature: 12.0,
             scores: [[0.0, 1.0, 0.0]; SCORES],
             bias: -2.0,
             unknown_per_sec: 0.0,
-            limits: vec![200.0; primitives],
+            limits: vec![300.0; primitives],
         }
     }
 
     /// As a vocabulary keeps it.
     pub fn calibration(&self) -> Calibration {
-        let mut shared = vec![self.temperature, self.bias, self.unknown_per_sec];
+        let mut shared = vec![EDITION, self.temperature, self.bias, self.unknown_per_sec];
         shared.extend(self.scores.iter().flatten());
         Calibration {
             recogniser: NAME.into(),
@@ -67,7 +69,8 @@ impl Learned {
 
     /// From what a vocabulary keeps; `None` where that is no such thing.
     pub fn of(calibration: &Calibration) -> Option<Self> {
-        let [temperature, bias, unknown_per_sec, scores @ ..] = calibration.shared.as_slice()
+        let [EDITION, temperature, bias, unknown_per_sec, scores @ ..] =
+            calibration.shared.as_slice()
         else {
             return None;
         };
@@ -118,7 +121,7 @@ pub(super) fn classes(filter: &Filter<'_>, evidence: &Evidence, left_out: &[bool
 /// The scores by which the unknown is told: gain over movement of any kind, lead over the second, lead over the median
 /// primitive, cost, and cost as a share of what the leading primitive usually costs; all but the last a second.
 pub(super) fn scores(classes: &[f64], evidence: &Evidence, limits: &[f64]) -> [f64; SCORES] {
-    let secs = evidence.secs.max(0.1);
+    let secs = evidence.lasts();
     let known: Vec<f64> = classes.iter().copied().filter(|c| c.is_finite()).collect();
     let mut best = 0;
     for (k, c) in classes.iter().enumerate() {
@@ -150,20 +153,21 @@ pub(super) fn scores(classes: &[f64], evidence: &Evidence, limits: &[f64]) -> [f
     ]
 }
 
-/// A clip of which something is left out: the primitives' log-likelihoods, the clip, and its true primitive if that is
-/// among them.
+/// A clip of which something is left out: the primitives' log-likelihoods, the seconds that they are divided by, the
+/// clip, and its true primitive if that is among them.
 struct Trial {
     classes: Vec<f64>,
+    secs: f64,
     fold: usize,
     truth: Option<usize>,
 }
 
 /// Learns from a vocabulary's own exemplars.
 ///
-/// Each is left out three times: alone, and it stands for a known movement of somebody known; with the half of its
-/// primitive's other exemplars that is nearest to it, which are by the same person if persons there are, and it stands
-/// for a known movement of somebody new; and with its whole primitive, and it stands for something unknown. `kept` has
-/// limits that are not to change.
+/// Each is left out three times: alone, and it stands for a known movement of somebody known; with the half of every
+/// primitive's exemplars that is nearest to it, which are by the same person if persons there are, and it stands for a
+/// known movement of somebody new; and with its whole primitive, and it stands for something unknown. `kept` has limits
+/// that are not to change.
 pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned> {
     let vocabulary = filter.vocabulary;
     let folds = folds(filter);
@@ -177,7 +181,9 @@ pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned
     let usual = Learned::usual(vocabulary.primitives().len());
     let trials = trials(filter, &folds, &evidences);
     let limits = limits(vocabulary, &trials, &evidences, kept, &usual);
-    let temperature = temperature(&trials).unwrap_or(usual.temperature);
+    let temperature = temperature(&trials)
+        .or_else(|| Some(chance_lead(&trials)?.max(usual.temperature)))
+        .unwrap_or(usual.temperature);
     let mut learned = Learned {
         temperature,
         limits,
@@ -207,22 +213,25 @@ pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned
             .filter(possible)
             .zip(&told)
             .filter(|(t, _)| t.truth.is_some())
-            .map(|(t, (scores, _))| -loss(&t.classes, None, temperature) - bare.unknown(scores))
+            .map(|(t, (scores, _))| {
+                -loss(&t.classes, None, temperature * t.secs) - bare.unknown(scores)
+            })
             .collect();
         let keeping = quantile(&room, 1.0 - CALLED).unwrap_or(learned.bias);
         learned.bias = learned.bias.min(keeping - MARGIN);
-        let gains = |unknown: bool| -> Vec<f64> {
-            told.iter()
-                .filter(|t| t.1 == unknown)
-                .map(|t| t.0[0])
-                .collect()
-        };
-        // Between what the least of the known gains over movement of any kind, and what the unknown gains.
-        let (known, unknown) = (gains(false), gains(true));
-        if let (Some(low), Some(high)) = (quantile(&known, 1.0 - KEPT), median(&unknown)) {
-            learned.unknown_per_sec = 0.5 * (low + low.min(high));
-        }
     }
+    let gains = |unknown: bool| -> Vec<f64> {
+        let of = told.iter().filter(|t| t.1 == unknown);
+        of.map(|t| t.0[0]).collect()
+    };
+    let (known, unknown) = (gains(false), gains(true));
+    learned.unknown_per_sec = match (quantile(&known, 1.0 - KEPT), median(&unknown)) {
+        // Between what the least of the known gains over movement of any kind, and what the unknown gains.
+        (Some(low), Some(high)) => 0.5 * (low + low.min(high)),
+        // Of single exemplars nobody knows what the known gain, but they gain more than the unknown.
+        (None, Some(high)) => high.min(usual.unknown_per_sec),
+        _ => usual.unknown_per_sec,
+    };
     Ok(learned)
 }
 
@@ -254,41 +263,50 @@ fn trials(filter: &Filter<'_>, folds: &[(usize, usize)], evidences: &[Evidence])
     let rows = &filter.clips.rows;
     let mut trials = Vec::new();
     for (fold, (&(k, i), evidence)) in folds.iter().zip(evidences).enumerate() {
-        let others: Vec<usize> = (0..rows.len())
-            .filter(|&r| rows[r].primitive == k && rows[r].exemplar != Some(i))
-            .collect();
-        let mut near = others.clone();
-        near.sort_by(|&a, &b| evidence.rows[b].total_cmp(&evidence.rows[a]));
-        near.truncate(others.len() / 2);
-        let mut left_out: Vec<bool> = rows
+        let alone: Vec<bool> = rows
             .iter()
             .map(|r| r.primitive == k && r.exemplar == Some(i))
             .collect();
-        let mut known = |left_out: &[bool]| {
+        let mut trial = |left_out: &[bool], truth: Option<usize>| {
             trials.push(Trial {
                 classes: classes(filter, evidence, left_out),
+                secs: evidence.lasts(),
                 fold,
-                truth: Some(k),
+                truth,
             });
         };
-        if !others.is_empty() {
-            known(&left_out);
+        let others = (0..rows.len()).filter(|&r| rows[r].primitive == k && !alone[r]);
+        if others.count() > 0 {
+            trial(&alone, Some(k));
             // A grid of parameters is nobody's: its exemplars are by one hand.
             if principal(filter.vocabulary, k) {
-                for r in near {
-                    left_out[r] = true;
-                }
-                known(&left_out);
+                trial(&nearest_half(filter, evidence, &alone), Some(k));
             }
         }
         let whole: Vec<bool> = rows.iter().map(|r| r.primitive == k).collect();
-        trials.push(Trial {
-            classes: classes(filter, evidence, &whole),
-            fold,
-            truth: None,
-        });
+        trial(&whole, None);
     }
     trials
+}
+
+/// Leaves out the half of each primitive's rows that is likeliest beside those that are left out already. Rivals lose
+/// theirs as well: whoever is new is so in all movements.
+fn nearest_half(filter: &Filter<'_>, evidence: &Evidence, left_out: &[bool]) -> Vec<bool> {
+    let rows = &filter.clips.rows;
+    let mut all = left_out.to_vec();
+    for k in 0..filter.vocabulary.primitives().len() {
+        if !principal(filter.vocabulary, k) {
+            continue;
+        }
+        let mut own: Vec<usize> = (0..rows.len())
+            .filter(|&r| rows[r].primitive == k && !left_out[r])
+            .collect();
+        own.sort_by(|&a, &b| evidence.rows[b].total_cmp(&evidence.rows[a]));
+        for &r in &own[..own.len() / 2] {
+            all[r] = true;
+        }
+    }
+    all
 }
 
 /// What clips of each primitive cost at most, as a rule; of primitives that say nothing the median of the others.
@@ -301,7 +319,7 @@ fn limits(
 ) -> Vec<f64> {
     let costs = |k: usize| -> Vec<f64> {
         let own = trials.iter().filter(|t| t.truth == Some(k));
-        own.map(|t| -t.classes[k] / evidences[t.fold].secs.max(0.1))
+        own.map(|t| -t.classes[k] / evidences[t.fold].lasts())
             .collect()
     };
     let of = |k: usize| quantile(&costs(k), KEPT).filter(|l| *l > 0.0);
@@ -315,20 +333,35 @@ fn limits(
 
 /// The temperature at which the truth is most probable; `None` without known trials or rivals.
 fn temperature(trials: &[Trial]) -> Option<f64> {
-    let known: Vec<(&Vec<f64>, usize)> = trials
+    let known: Vec<(&Trial, usize)> = trials
         .iter()
-        .filter_map(|t| Some((&t.classes, t.truth?)))
-        .filter(|(c, _)| c.len() > 1)
+        .filter_map(|t| Some((t, t.truth?)))
+        .filter(|(t, _)| t.classes.len() > 1)
         .collect();
     if known.is_empty() {
         return None;
     }
     let all = |t: f64| -> f64 {
-        let of = |(classes, truth): &(&Vec<f64>, usize)| loss(classes, Some(*truth), t);
+        let of =
+            |(trial, truth): &(&Trial, usize)| loss(&trial.classes, Some(*truth), t * trial.secs);
         known.iter().map(of).sum()
     };
     let candidates = (0..=60).map(|k| 10f64.powf(-0.5 + 3.0 * f64::from(k) / 60.0));
     candidates.min_by(|a, b| all(*a).total_cmp(&all(*b)))
+}
+
+/// How far the likeliest of wrong answers leads the second, as a rule, a second of the clip: less than that tells nothing.
+/// It stands for the temperature where every primitive has one exemplar, and nothing known can be left out. `None` where
+/// less than three primitives are.
+fn chance_lead(trials: &[Trial]) -> Option<f64> {
+    let lead = |trial: &Trial| {
+        let mut classes = trial.classes.clone();
+        classes.sort_by(|a, b| b.total_cmp(a));
+        let [first, second] = *classes.first_chunk()?;
+        Some((first - second) / trial.secs).filter(|lead| lead.is_finite())
+    };
+    let unknown = trials.iter().filter(|t| t.truth.is_none());
+    median(&unknown.filter_map(lead).collect::<Vec<f64>>())
 }
 
 /// Less the logarithm of a primitive's probability among all, of the most probable one if none is named.

@@ -48,7 +48,7 @@ impl Model {
             features.extend(own);
             bounds.join(&range);
         }
-        let covariance = covariance(vocabulary, &rows, &features, dims);
+        let covariance = covariance(vocabulary, &rows, &features, &layout.still());
         let [hands, body] = layout.parts();
         let trusts = [settings.hands_trust, settings.body_trust];
         let parts: Vec<Part> = [hands, body]

@@ -5,8 +5,10 @@ use nalgebra::{DMatrix, DVector};
 use super::rows::Row;
 use crate::primitive::{ParameterSource, Vocabulary};
 
-/// Standard deviation expected before any exemplar was seen, metres: what people and retargeting are good for.
-const PRIOR_M: f64 = 0.04;
+/// Standard deviations expected before any exemplar was seen, metres: of displacements, what people and retargeting are
+/// good for; of postures more, as people stand differently, which displacements forget.
+const PRIOR_DISPLACEMENT_M: f64 = 0.04;
+const PRIOR_POSTURE_M: f64 = 0.06;
 /// Never less than so much, metres: else what a few exemplars share by chance would decide everything.
 const FLOOR_M: f64 = 0.03;
 /// As many residuals of that size are taken for granted.
@@ -18,7 +20,7 @@ const NEAR: f64 = 0.15;
 /// At most so many pairs of rows a primitive.
 const MOST_PAIRS: usize = 200;
 
-/// The covariance of features about their row.
+/// The covariance of features about their row; `still` tells which of their numbers are of postures.
 ///
 /// Residuals are differences of two rows of one primitive at the same phase. Where exemplars are given by many people,
 /// or by one on several days, the more distant half of the pairs counts: a new person will be as far. Where a grid of
@@ -27,9 +29,14 @@ pub(super) fn covariance(
     vocabulary: &Vocabulary,
     rows: &[Row],
     features: &[f64],
-    dims: usize,
+    still: &[bool],
 ) -> DMatrix<f64> {
-    let mut sum = DMatrix::<f64>::identity(dims, dims) * (PRIOR_M * PRIOR_M * PRIOR_COUNT);
+    let prior = still.iter().map(|posture| match posture {
+        true => PRIOR_COUNT * PRIOR_POSTURE_M * PRIOR_POSTURE_M,
+        false => PRIOR_COUNT * PRIOR_DISPLACEMENT_M * PRIOR_DISPLACEMENT_M,
+    });
+    let dims = still.len();
+    let mut sum = DMatrix::from_diagonal(&DVector::from_iterator(dims, prior));
     let mut count = PRIOR_COUNT;
     let mut starts = Vec::with_capacity(rows.len());
     let mut first = 0;

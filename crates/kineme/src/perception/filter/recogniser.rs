@@ -30,7 +30,8 @@ pub struct FilterSettings {
     pub hands_trust: f64,
     /// The same of the whole body.
     pub body_trust: f64,
-    /// Directions of the whitened features that are kept, those in which the vocabulary varies most.
+    /// Directions of the whitened features that are kept of the hands, and of the body: those in which the vocabulary
+    /// varies most.
     pub directions: usize,
     /// Rows a primitive at most: exemplars, and courses between them where parameters have a meaning.
     pub rows: usize,
@@ -43,9 +44,9 @@ pub struct FilterSettings {
 impl Default for FilterSettings {
     fn default() -> Self {
         Self {
-            hands_trust: 8.0,
+            hands_trust: 4.0,
             body_trust: 3.0,
-            directions: 40,
+            directions: 20,
             rows: 64,
             clock_hz: 30.0,
             lag_secs: 0.0,
@@ -147,9 +148,10 @@ impl<'v> Filter<'v> {
         let rows = &self.clips.rows;
         let classes = classes(self, &evidence, &vec![false; rows.len()]);
         let most = classes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let temperature = self.learned.temperature * evidence.lasts();
         let weights: Vec<f64> = classes
             .iter()
-            .map(|c| ((c - most) / self.learned.temperature).exp())
+            .map(|c| ((c - most) / temperature).exp())
             .collect();
         let sum: f64 = weights.iter().sum();
         let odds = self
@@ -173,7 +175,7 @@ impl<'v> Filter<'v> {
         let dims = self.vocabulary.primitives()[leading].parameters().dims();
         let (mut total, mut parameters) = (0.0, vec![0.0; dims]);
         for (row, e) in own() {
-            let w = ((e - best) / self.learned.temperature).exp();
+            let w = ((e - best) / temperature).exp();
             total += w;
             for (sum, p) in parameters.iter_mut().zip(&row.parameters) {
                 *sum += w * p;

@@ -56,7 +56,12 @@ impl Paper<'_> {
     /// # Errors
     /// When there is no such primitive.
     pub fn chain(&self, primitive: usize) -> Result<Vec<usize>> {
-        Ok(self.class(primitive)?.chain().iter().map(|c| c.at).collect())
+        Ok(self
+            .class(primitive)?
+            .chain()
+            .iter()
+            .map(|c| c.at)
+            .collect())
     }
 
     /// The length of the range over which a coordinate is uniform where the movement is not the primitive, radians.
@@ -103,7 +108,10 @@ impl Paper<'_> {
         own.envelope
             .attained(value, self.delta_rad(), &within, &mut found);
         let pieces = self.settings.pieces as f64;
-        Ok(found.iter().map(|(a, b)| [a / pieces, b / pieces]).collect())
+        Ok(found
+            .iter()
+            .map(|(a, b)| [a / pieces, b / pieces])
+            .collect())
     }
 
     /// The density of a coordinate's value among samples from these phases, 1/rad: what the classifier reads off the
@@ -170,6 +178,9 @@ impl Paper<'_> {
             )));
         }
         let pieces = self.settings.pieces as f64;
-        Ok(within.iter().map(|[a, b]| (a * pieces, b * pieces)).collect())
+        Ok(within
+            .iter()
+            .map(|[a, b]| (a * pieces, b * pieces))
+            .collect())
     }
 }

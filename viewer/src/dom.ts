@@ -1,0 +1,47 @@
+// Elements, made briefly.
+
+type Children = (Node | string)[];
+
+export function make<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Record<string, string> = {},
+  ...children: Children
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+/** A button that says what it does, with a sign in place of words where the sign is known. */
+export function button(label: string, sign: string, act: () => void): HTMLButtonElement {
+  const element = make("button", { type: "button", title: label, "aria-label": label }, sign);
+  element.addEventListener("click", act);
+  return element;
+}
+
+/** A button that is on or off. */
+export function toggle(label: string, sign: string, on: boolean, act: (on: boolean) => void): HTMLButtonElement {
+  const element: HTMLButtonElement = button(label, sign, () => {
+    on = !on;
+    element.setAttribute("aria-pressed", String(on));
+    act(on);
+  });
+  element.setAttribute("aria-pressed", String(on));
+  return element;
+}
+
+/** Black or white, whichever reads better on a colour (relative luminance of WCAG 2.1). */
+export function textOn(colour: string): string {
+  const level = (at: number): number => {
+    const c = parseInt(colour.slice(at, at + 2), 16) / 255;
+    return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
+  };
+  return 0.2126 * level(1) + 0.7152 * level(3) + 0.0722 * level(5) > 0.179 ? "#000" : "#fff";
+}
+
+/** A number as readers like it. */
+export function short(value: number, digits = 2): string {
+  const text = value.toFixed(digits);
+  return Number(text) === 0 ? (0).toFixed(digits) : text.replace("-", "\u2212");
+}

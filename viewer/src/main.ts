@@ -1,0 +1,70 @@
+// The page's program: draws the scene that the page holds.
+import { CardView } from "./card";
+import type { Scene } from "./data";
+import type { Player } from "./player";
+import { Stage } from "./stage";
+import { slow } from "./world";
+import "./viewer.css";
+
+interface Part {
+  readonly element: HTMLElement;
+  readonly player: Player;
+  tick(secs: number): void;
+}
+
+function start(scene: Scene): void {
+  const parts: Part[] = [];
+  const stage = document.getElementById("stage");
+  if (stage && scene.takes.length > 0) parts.push(new Stage(scene, stage));
+
+  // A card is made when it is about to be seen: a page may hold many.
+  const cards = [...document.querySelectorAll<HTMLElement>(".card")];
+  const soon = new IntersectionObserver((entries) => {
+    for (const entry of entries) {
+      if (!entry.isIntersecting) continue;
+      soon.unobserve(entry.target);
+      const card = scene.primitives[cards.indexOf(entry.target as HTMLElement)];
+      parts.push(new CardView(scene, card, entry.target as HTMLElement));
+    }
+  }, { rootMargin: "300px" });
+  for (const card of cards) soon.observe(card);
+
+  document.addEventListener("keydown", (event) => {
+    const target = event.target as HTMLElement;
+    const own = target.closest("select, textarea, button, a, input:not([type=range])");
+    if (own && (event.key === " " || own.matches("select, input"))) return;
+    // A slider of a parameter has the arrows for itself; the one of time has them anyway.
+    if (target.matches("input[type=range]:not(.scrub)") && event.key !== " ") return;
+    const part = parts.find((p) => p.element.contains(target)) ?? (target === document.body ? parts[0] : undefined);
+    if (part?.player.key(event)) event.preventDefault();
+  });
+
+  let before = performance.now();
+  let rested = 0;
+  const frame = (now: number): void => {
+    requestAnimationFrame(frame);
+    // Where drawing is slow the page must still answer: after a picture it rests as long as the picture took.
+    if (now < rested) return;
+    // After a pause, such as in a hidden tab, time goes on where it stood.
+    const secs = Math.min((now - before) / 1000, 0.25);
+    before = now;
+    const begun = performance.now();
+    for (const part of parts) part.tick(secs);
+    const took = performance.now() - begun;
+    rested = took > 12 ? begun + took + Math.min(took, 300) : 0;
+    if (took > 0.5) slow(took);
+  };
+  requestAnimationFrame(frame);
+}
+
+const text = document.getElementById("scene")?.textContent;
+if (text) {
+  try {
+    start(JSON.parse(text) as Scene);
+  } catch (error) {
+    const notice = document.createElement("p");
+    notice.className = "notice";
+    notice.textContent = `The bodies cannot be drawn here: ${error instanceof Error ? error.message : String(error)}. Still figures are below.`;
+    document.querySelector("header")?.append(notice);
+  }
+}
