@@ -1,0 +1,25 @@
+//! Table I of the paper on open data: three sets of motion, every frame of which each of five behaviours is affirmed or
+//! denied, and what the accuracy of that hides.
+//!
+//! The sets are made by [`movements`] (what simulated Ares did), [`animations`] and [`recorded`]; [`Mode`] says how is
+//! decided, [`Tally`] counts, [`measures`] are what is read off the counts. [`table1`] runs all of it.
+
+mod captured;
+mod clip;
+mod disturbed;
+mod measures;
+mod mode;
+mod movements;
+mod run;
+mod tally;
+mod written;
+
+pub(crate) use captured::ALL_ZERO;
+pub use captured::{Captured, Showing, recorded, shows};
+pub use clip::{Altered, Clip, animations, unmoved};
+pub use disturbed::{HYBRID_APART, cut_out, hybrids, reversed};
+pub use measures::{MEASURES, Measure, garwood, measures};
+pub use mode::{Decisions, Mode};
+pub use movements::{MovementSettings, RATE_HZ, drawn, movements, perform, plan, ready_made};
+pub use run::{Row, Table, TableSettings, Timing, boxer, table1};
+pub use tally::{Counts, Tally};
