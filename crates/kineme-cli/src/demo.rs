@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use kineme_paper::demo::{self, Demo, VOCABULARY};
+use kineme_paper::demo::{self, Demo, Found, VOCABULARY};
 use kineme_paper::show::PLANS;
 
 use crate::args::{DemoArgs, Global};
@@ -23,8 +23,8 @@ pub fn run(args: &DemoArgs, global: &Global) -> Result<u8, Failure> {
         .write(&args.out, existing(global))
         .map_err(unwritten)?;
     let findings = Findings {
-        derived: &found.derived,
-        motions: &found.motions,
+        derived: &found.found.derived,
+        motions: &found.found.motions,
         seconds: None,
     };
     if global.json {
@@ -35,11 +35,11 @@ pub fn run(args: &DemoArgs, global: &Global) -> Result<u8, Failure> {
         "{}\nA choreographed session of {} recordings, {} movements in {} strokes, that recur in varied order, size and \
          speed.\nWhat was found in it without being told:\n\n{}\n{}\nwritten:    {}\nto look at: {}\ntry next:   kineme control {} {} --body adonis\n",
         shown(&found),
-        found.motions.len(),
-        found.movements.kinds,
-        found.strokes.kinds,
+        found.found.motions.len(),
+        found.found.movements.kinds,
+        found.found.strokes.kinds,
         findings.text(),
-        judged(&found),
+        judged(&found.found),
         args.out.join(VOCABULARY).display(),
         page.display(),
         args.out.join(demo::MOVEMENTS_KNOWN).display(),
@@ -89,7 +89,7 @@ fn shown(found: &Demo) -> String {
 }
 
 /// What was found beside what was choreographed.
-fn judged(found: &Demo) -> String {
+fn judged(found: &Found) -> String {
     let rows: Vec<Vec<String>> = found
         .derived
         .groups

@@ -38,9 +38,9 @@ const ATTACKER: &str = "attacker.csv";
 /// Frames a second at which the session is performed.
 const RATE_HZ: f64 = 60.0;
 
-/// What the demo found.
+/// What was found in the session.
 #[derive(Debug, Clone)]
-pub struct Demo {
+pub struct Found {
     /// The session's motions, of Ares.
     pub motions: Vec<Motion>,
     /// What was derived from them.
@@ -53,6 +53,13 @@ pub struct Demo {
     pub movements: Match,
     /// For each group the stroke that most of its segments are, with how many.
     pub names: Vec<(String, usize)>,
+}
+
+/// The demo.
+#[derive(Debug, Clone)]
+pub struct Demo {
+    /// What was found in the session.
+    pub found: Found,
     /// What bodies did with written primitives.
     pub show: Show,
 }
@@ -97,11 +104,22 @@ struct Stroke {
     stroke: String,
 }
 
-/// Performs the session, derives its vocabulary, and puts the show on; `watch` hears of every step as it begins.
+/// Finds what is in the session, and puts the show on; `watch` hears of every step as it begins.
+///
+/// # Errors
+/// As [`find`] and [`show`].
+pub fn run(seed: u64, watch: &mut dyn FnMut(Step)) -> Result<Demo> {
+    Ok(Demo {
+        found: find(seed, &mut |stage| watch(Step::Deriving(stage)))?,
+        show: show(seed, &mut |act| watch(Step::Showing(act)))?,
+    })
+}
+
+/// Performs the session and derives its vocabulary; `watch` hears of every stage as it begins.
 ///
 /// # Errors
 /// When the embedded session is not sound, or a step of the derivation fails.
-pub fn run(seed: u64, watch: &mut dyn FnMut(Step)) -> Result<Demo> {
+pub fn find(seed: u64, watch: &mut dyn FnMut(Stage)) -> Result<Found> {
     let motions = session()?;
     let truth = strokes()?;
     let mut settings = Derivation::new(Cut::Segmenter {
@@ -109,7 +127,7 @@ pub fn run(seed: u64, watch: &mut dyn FnMut(Step)) -> Result<Demo> {
         target_secs: None,
     });
     settings.seed = seed;
-    let derived = settings.run(&motions, &mut |stage| watch(Step::Deriving(stage)))?;
+    let derived = settings.run(&motions, watch)?;
     let vocabulary = derived.vocabulary(&motions, &kineme::Modelling::default(), &|_| None)?;
     let vocabulary = calibrated(vocabulary, None)?;
 
@@ -129,11 +147,10 @@ pub fn run(seed: u64, watch: &mut dyn FnMut(Step)) -> Result<Demo> {
         .iter()
         .map(|label| label.map(|g| derived.behaviors.of_group[g]))
         .collect();
-    Ok(Demo {
+    Ok(Found {
         strokes: matched(&derived.labels, &strokes),
         movements: matched(&behaviors, &movements),
         names: most_frequent(&derived.labels, &strokes),
-        show: show(seed, &mut |act| watch(Step::Showing(act)))?,
         motions,
         derived,
         vocabulary,
@@ -146,7 +163,7 @@ impl Demo {
     /// # Errors
     /// When a file exists and is to be kept, or cannot be written.
     pub fn write(&self, folder: &Path, existing: Existing) -> kineme_formats::Result<PathBuf> {
-        let bytes = vocabulary::write(&self.vocabulary, VOCABULARY)?;
+        let bytes = vocabulary::write(&self.found.vocabulary, VOCABULARY)?;
         output::write_bytes(&folder.join(VOCABULARY), existing, &bytes)?;
         for (file, made) in [
             (MOVEMENTS_KNOWN, &self.show.movements),
@@ -169,20 +186,20 @@ impl Demo {
              grouped. Nobody told the procedure what the movements are."
                 .to_string(),
         ];
-        paragraphs.extend(summary(&self.derived, &self.motions));
+        paragraphs.extend(summary(&self.found.derived, &self.found.motions));
         paragraphs.push(format!(
             "Against what was choreographed: {:.0} % of the grouped segments are of their group's most frequent \
              stroke (adjusted Rand index {:.2}), and {:.0} % of their behavior's most frequent movement ({:.2}).",
-            100.0 * self.strokes.purity,
-            self.strokes.ari,
-            100.0 * self.movements.purity,
-            self.movements.ari
+            100.0 * self.found.strokes.purity,
+            self.found.strokes.ari,
+            100.0 * self.found.movements.purity,
+            self.found.movements.ari
         ));
         let title = "One vocabulary, two directions";
         let report = Report::of(
-            &self.derived,
-            &self.motions,
-            &self.vocabulary,
+            &self.found.derived,
+            &self.found.motions,
+            &self.found.vocabulary,
             Some(&self.show),
             (title, &paragraphs),
         );

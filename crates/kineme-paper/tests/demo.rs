@@ -45,7 +45,7 @@ fn bodies_do_the_routine_and_what_they_do_is_recognised() {
 
 #[test]
 fn the_choreographed_movements_are_found() {
-    let (demo, _) = &*MADE;
+    let demo = &MADE.0.found;
     assert_eq!((demo.motions.len(), demo.movements.kinds), (4, 8));
     for motion in &demo.motions {
         let secs = motion.duration_secs();

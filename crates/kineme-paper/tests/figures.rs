@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use kineme::perception::{Paper, PaperSettings};
 use kineme::primitive::{Observation, Recogniser};
 use kineme_formats::output::Existing;
-use kineme_paper::demo::{Demo, run};
+use kineme_paper::demo::{Found, find};
 use kineme_paper::paper_figures::{
     Encoded, NAMES, Relaxation, chart, draw, encoded, field_view, files, panels, punching,
     relaxation, write,
@@ -31,9 +31,9 @@ fn says(svg: &str, words: &str) -> usize {
         .count()
 }
 
-fn demo() -> &'static Demo {
-    static DEMO: OnceLock<Demo> = OnceLock::new();
-    DEMO.get_or_init(|| run(0, &mut |_| {}).expect("a demo"))
+fn demo() -> &'static Found {
+    static DEMO: OnceLock<Found> = OnceLock::new();
+    DEMO.get_or_init(|| find(0, &mut |_| {}).expect("a demo"))
 }
 
 fn relaxed() -> &'static Relaxation {

@@ -6,7 +6,7 @@ use kineme::primitive::Primitive;
 use kineme::{Motion, Root};
 use kineme_report::paper::HandPanel;
 
-use crate::demo::Demo;
+use crate::demo::Found;
 use crate::figures::wrists;
 use crate::sets::Result;
 
@@ -26,7 +26,7 @@ const POSTURES: usize = 33;
 ///
 /// # Errors
 /// When the derivation found no group of one of the behaviours.
-pub fn panels(demo: &Demo) -> Result<Vec<HandPanel>> {
+pub fn panels(demo: &Found) -> Result<Vec<HandPanel>> {
     let groups = &demo.derived.groups;
     let coherence = |g: usize| groups[g].coherence.unwrap_or(0.0);
     let mut panels = Vec::new();
@@ -52,7 +52,7 @@ pub fn panels(demo: &Demo) -> Result<Vec<HandPanel>> {
     Ok(panels)
 }
 
-fn panel(demo: &Demo, g: usize, title: String) -> Result<HandPanel> {
+fn panel(demo: &Found, g: usize, title: String) -> Result<HandPanel> {
     let group = &demo.derived.groups[g];
     let (stroke, count) = &demo.names[g];
     let hands = group.segments.iter().map(|&s| {

@@ -81,7 +81,7 @@ pub fn files() -> Vec<String> {
 /// When a choreography that comes with the program is not sound, or a step of the computation fails.
 pub fn draw(seed: u64, watch: &mut dyn FnMut(&'static str)) -> Result<[String; 7]> {
     watch("figure1");
-    let derived = demo::run(seed, &mut |_| {})?;
+    let derived = demo::find(seed, &mut |_| {})?;
     let hands = paper::hand_panels(&panels(&derived)?);
     watch("figure2");
     let ares = Arc::new(kineme::ares()?);
