@@ -9,6 +9,7 @@ pub mod export;
 pub mod few_shots;
 pub mod known;
 pub mod latency;
+pub mod law;
 pub mod open_set;
 pub mod peers;
 pub mod streams;

@@ -10,6 +10,7 @@ use super::damage::{costs, write_costs};
 use super::exercises::Exercises;
 use super::few_shots::few_shots;
 use super::known::Method;
+use super::law::write_law;
 use super::open_set::{rejections, write_rejections};
 use super::peers::Peers;
 use super::streams::{dances, hear, write_streams};
@@ -102,6 +103,9 @@ pub fn perception_tables(
         }
         let right = costs(of, &hurt, DAMAGED)?;
         tell(&mut details, watch, |t| write_costs(t, of, &hurt, &right))?;
+    }
+    if begin("inverse law".into(), watch) {
+        tell(&mut details, watch, write_law)?;
     }
     whole.extend(rest);
     let mut out = String::from("\n### Aims: the whole body, `filter`\n");
