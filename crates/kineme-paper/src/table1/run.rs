@@ -158,7 +158,7 @@ pub struct Table {
 }
 
 /// The ways of deciding of the main table.
-const MODES: [Mode; 9] = [
+const MODES: [Mode; 8] = [
     Mode::Never,
     Mode::Paper { n: 1, stride: 1 },
     Mode::Paper { n: 2, stride: 1 },
@@ -168,10 +168,6 @@ const MODES: [Mode; 9] = [
     Mode::Filter {
         lag_secs: 0.0,
         held_secs: 0.1,
-    },
-    Mode::Filter {
-        lag_secs: 0.25,
-        held_secs: 0.0,
     },
     Mode::Spans,
 ];
