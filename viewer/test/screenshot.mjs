@@ -6,7 +6,7 @@ import { executablePath, launch, open, redrawn, until } from "./browser.mjs";
 const [file, picture] = process.argv.slice(2);
 if (!executablePath) throw new Error("no Chromium here (Debian: apt install chromium; or KINEME_CHROMIUM names one)");
 const browser = await launch();
-const { page } = await open(browser, pathToFileURL(resolve(file)).href, { viewport: { width: 860, height: 560 }, reducedMotion: "reduce" });
+const { page } = await open(browser, pathToFileURL(resolve(file)).href, { viewport: { width: 720, height: 560 }, reducedMotion: "reduce" });
 const stage = "#stage canvas";
 await until(page, () => document.querySelector("#stage canvas")?.dataset.drawn !== undefined);
 await redrawn(page, stage, () => page.evaluate(() => {

@@ -335,11 +335,11 @@ fn sets_of_primitives_are_answered_by_what_their_primitives_share() {
         (answer.set(), answer.leading, answer.refused),
         (None, 1, true)
     );
-    for set in 0..SETS.len() {
+    for (set, name) in SETS.iter().enumerate() {
         assert!(
             RESEMBLING.iter().any(|(.., truth)| *truth == Some(set)),
             "{}",
-            SETS[set]
+            name
         );
     }
 }

@@ -59,8 +59,11 @@ pub fn encoded() -> Result<Encoded> {
     })
 }
 
+/// From when to when, seconds, and which primitive.
+type Stretch = (f64, f64, usize);
+
 /// The movement of Adonis, and what it is when: from, to, primitive.
-fn done(known: &Vocabulary) -> Result<(Motion, Vec<(f64, f64, usize)>)> {
+fn done(known: &Vocabulary) -> Result<(Motion, Vec<Stretch>)> {
     let adonis = Arc::new(kineme::adonis()?);
     let moves = vocabulary(&["punching.toml", "horizontal-waving.toml"], &adonis)?;
     let course =

@@ -1,6 +1,6 @@
 //! What a joint does over all parameters, and when it can assume a value: Figures 4 and 5.
 
-use super::plot::{GREEN, Plot, field_swatch, legend, line_swatch, outline, signed};
+use super::plot::{Entry, GREEN, Plot, field_swatch, legend, line_swatch, outline, signed};
 use crate::axis::extent;
 use crate::svg::{Anchor, HEAD, MARGIN, SMALL, Svg, Type, nothing};
 
@@ -90,8 +90,7 @@ fn draw_legend(svg: &mut Svg, figure: &Mixture) {
     let level = line_swatch("class=\"accent-line\" stroke-width=\"1.8\" stroke-dasharray=\"6 4\"");
     let interval = field_swatch("class=\"accent\" fill-opacity=\"0.22\"");
     let exact = field_swatch("fill=\"#009e73\" fill-opacity=\"0.65\"");
-    let mut entries: Vec<(&dyn Fn(&mut Svg, [f64; 2]), &str)> =
-        vec![(&field, "swept by p"), (&exemplar, "exemplars")];
+    let mut entries: Vec<Entry> = vec![(&field, "swept by p"), (&exemplar, "exemplars")];
     if figure.level.is_some() {
         entries.push((&level, "observed value"));
     }

@@ -90,8 +90,11 @@ pub fn outline(points: &[[f64; 2]]) -> String {
     data + "Z"
 }
 
+/// What a legend shows: how its mark is drawn at a point, and its words.
+pub type Entry<'a> = (&'a dyn Fn(&mut Svg, [f64; 2]), &'a str);
+
 /// Entries of a legend in one row: a swatch drawn at its left middle, and its name.
-pub fn legend(svg: &mut Svg, [x, y]: [f64; 2], entries: &[(&dyn Fn(&mut Svg, [f64; 2]), &str)]) {
+pub fn legend(svg: &mut Svg, [x, y]: [f64; 2], entries: &[Entry]) {
     let mut at = x;
     for (swatch, name) in entries {
         swatch(svg, [at, y]);
