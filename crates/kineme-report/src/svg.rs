@@ -89,11 +89,15 @@ impl Svg {
     /// The whole text. The height may have become known only now.
     pub fn finish(self, height: Option<f64>) -> String {
         let (w, h) = (number(self.width), number(height.unwrap_or(self.height)));
+        let label = match self.title.as_str() {
+            "" => "A figure without a title",
+            title => title,
+        };
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"kineme\" role=\"img\" aria-label=\"{}\" \
              width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\">\n<style>{STYLE}</style>\n\
              <rect class=\"paper\" width=\"{w}\" height=\"{h}\"/>\n{}</svg>\n",
-            self.title, self.body
+            label, self.body
         )
     }
 
