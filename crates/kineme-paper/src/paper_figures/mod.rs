@@ -63,7 +63,7 @@ const KINDS: &[&str] = match cfg!(feature = "png") {
     false => &["svg"],
 };
 
-/// The names of the files that [`write`] writes.
+/// The names of the files that [`write()`] writes.
 pub fn files() -> Vec<String> {
     let both = |name: &&str| {
         KINDS

@@ -101,7 +101,7 @@ pub fn plan(vocabulary: &Vocabulary, movements: usize, random: &mut Pcg64) -> Re
 }
 
 /// Carries a plan out. What the body really did, and which behaviour each frame belongs to: the one that moves most of
-/// its joints, from the moment on at which every joint was told to be within [`JOINED_DEG`] of f(p, phase). What comes
+/// its joints, from the moment on at which every joint was told to be within 5 degrees of f(p, phase). What comes
 /// before that (the way from another movement's midst, or from standing) is a transition, and nothing is running in a
 /// rest: both are none of the behaviours.
 ///
