@@ -60,6 +60,7 @@ fn write_page(root: &Path, page: &Path) -> Result<(), String> {
         "--quiet",
         "--package",
         "kineme-report",
+        "--no-default-features",
         "--example",
         "page",
         "--",
