@@ -9,7 +9,9 @@ mod reproduce;
 mod view;
 
 pub use classify::{ClassifierArgs, ClassifierName, ClassifyArgs};
-pub use control::{ControlArgs, ServoName};
+pub use control::ControlArgs;
+#[cfg(feature = "sim")]
+pub use control::ServoName;
 pub use encode::{EncodeArgs, EncodeMethod};
 pub use evaluate::{EvaluateArgs, MethodName};
 pub use model::{
