@@ -23,7 +23,6 @@ export class CardView {
   private readonly paths: Float32Array;
   private readonly clocks: Float32Array;
   private readonly clock: Float32Array;
-  private readonly width: number;
   private readonly values: number[];
   private readonly flow: FlowPicture | null = null;
   private readonly coordinates = new Float32Array(3);
@@ -32,7 +31,6 @@ export class CardView {
   constructor(scene: Scene, private readonly card: Card, readonly element: HTMLElement) {
     const body = scene.bodies[card.body];
     const colour = scene.palette[card.colour % scene.palette.length];
-    this.width = 3 * body.points;
     this.lattice = places(card.lattice);
     this.paths = places(card.paths);
     this.clocks = floats(card.clock);
@@ -147,12 +145,8 @@ export class CardView {
       blend(this.flow.lattice, 3, rows, this.coordinates);
       this.flow.now(this.coordinates);
     } else {
-      blend(this.lattice, this.width, rows, this.live.points);
-      this.live.update();
-      this.ghosts.forEach((ghost, i) => {
-        blend(this.paths, this.width, at.map(([k, v]): Weighed => [i * phases + k, v]), ghost.points);
-        ghost.update();
-      });
+      this.live.take(this.lattice, rows);
+      this.ghosts.forEach((ghost, i) => ghost.take(this.paths, at.map(([k, v]): Weighed => [i * phases + k, v])));
     }
     this.view.touch();
   }

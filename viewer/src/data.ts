@@ -16,6 +16,8 @@ export interface Body {
   name: string;
   points: number;
   centre: number;
+  /** The point that each point hangs on; null for one that goes its own way. */
+  parents: (number | null)[];
   bones: Bone[];
   tips: number[];
 }
@@ -25,6 +27,8 @@ export interface Actor {
   body: number;
   colour: number | null;
   ghost: boolean;
+  /** The track whose colour of the moment it wears. */
+  wears: number | null;
   rate_hz: number;
   start_secs: number;
   aside: [number, number, number];

@@ -31,6 +31,27 @@ export function toggle(label: string, sign: string, on: boolean, act: (on: boole
   return element;
 }
 
+/** One of several, by name: a row of them, or a list where they are many. */
+export function choice(label: string, names: string[], chosen: (i: number) => void): HTMLElement {
+  if (names.length > 9) {
+    const list = make("select", { "aria-label": label, class: "choice" });
+    names.forEach((name, i) => list.append(make("option", { value: String(i) }, name)));
+    list.addEventListener("change", () => chosen(Number(list.value)));
+    return list;
+  }
+  const row = make("div", { class: "choice row", role: "radiogroup", "aria-label": label });
+  names.forEach((name, i) => {
+    const one = make("input", { type: "radio", name: label, value: String(i) });
+    one.checked = i === 0;
+    one.addEventListener("change", () => {
+      chosen(i);
+      one.parentElement?.scrollIntoView({ block: "nearest", inline: "nearest" });
+    });
+    row.append(make("label", {}, one, name));
+  });
+  return row;
+}
+
 /** Black or white, whichever reads better on a colour (relative luminance of WCAG 2.1). */
 export function textOn(colour: string): string {
   const level = (at: number): number => {

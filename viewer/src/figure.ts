@@ -1,6 +1,7 @@
 // A body: round cones between moving points, as one mesh.
 import * as THREE from "three";
 import type { Body } from "./data";
+import { blendPosture, outward, type Weighed } from "./rows";
 
 interface Detail {
   /** Vertices around a bone. */
@@ -19,9 +20,11 @@ export class Figure {
   private readonly normals: THREE.BufferAttribute;
   private readonly material: THREE.MeshStandardMaterial;
   private readonly circle: Float32Array;
+  private readonly order: number[];
 
   constructor(private readonly body: Body, private readonly detail: Detail, ghost: number | null = null) {
     this.points = new Float32Array(3 * body.points);
+    this.order = outward(body);
     const columns = detail.around + 1;
     const perBone = 2 * detail.rings * columns;
     const count = body.bones.length * perBone;
@@ -65,8 +68,8 @@ export class Figure {
     this.group.add(mesh);
   }
 
-  colour(css: string): void {
-    this.material.color.set(css);
+  colour(colour: THREE.ColorRepresentation): void {
+    this.material.color.set(colour);
   }
 
   /** Where the body's centre is. */
@@ -74,15 +77,14 @@ export class Figure {
     return out.fromArray(this.points, 3 * this.body.centre).add(this.group.position);
   }
 
-  /** The least height of its points above the floor's zero. */
-  lowest(): number {
-    let low = Infinity;
-    for (let i = 2; i < this.points.length; i += 3) if (this.points[i] < low) low = this.points[i];
-    return low;
+  /** Draws the body between rows of a table of its postures. */
+  take(table: Float32Array, rows: Weighed[]): void {
+    blendPosture(table, this.body, this.order, rows, this.points);
+    this.update();
   }
 
   /** Draws the body at its points. */
-  update(): void {
+  private update(): void {
     const { around, rings } = this.detail;
     const position = this.positions.array as Float32Array;
     const normal = this.normals.array as Float32Array;

@@ -23,8 +23,8 @@ function start(scene: Scene): void {
     for (const entry of entries) {
       if (!entry.isIntersecting) continue;
       soon.unobserve(entry.target);
-      const card = scene.primitives[cards.indexOf(entry.target as HTMLElement)];
-      parts.push(new CardView(scene, card, entry.target as HTMLElement));
+      const element = entry.target as HTMLElement;
+      parts.push(new CardView(scene, scene.primitives[Number(element.dataset.card)], element));
     }
   }, { rootMargin: "300px" });
   for (const card of cards) soon.observe(card);

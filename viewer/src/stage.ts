@@ -1,10 +1,10 @@
 // The stage: one take at a time, its actors in three dimensions, its tracks beneath.
 import * as THREE from "three";
 import { places, type Actor, type Scene, type Take } from "./data";
-import { button, make, toggle } from "./dom";
+import { button, choice, make, toggle } from "./dom";
 import { Figure, FINE } from "./figure";
 import { Player } from "./player";
-import { around, blend } from "./rows";
+import { around } from "./rows";
 import { Timeline } from "./timeline";
 import { neutral, View } from "./world";
 
@@ -12,9 +12,12 @@ interface Playing {
   actor: Actor;
   figure: Figure;
   frames: Float32Array;
-  width: number;
+  colour: THREE.Color;
   shown: boolean;
 }
+
+/** Seconds in which a colour comes and goes. */
+const FADE = 0.1;
 
 export class Stage {
   readonly player: Player;
@@ -33,9 +36,6 @@ export class Stage {
     this.take = scene.takes[0];
     this.timeline = new Timeline(scene.palette, (secs) => this.player.put(secs));
     this.player = new Player("the motion", () => this.pose());
-    const choice = make("select", { "aria-label": "Motion", class: "choice" });
-    scene.takes.forEach((take, i) => choice.append(make("option", { value: String(i) }, take.name)));
-    choice.addEventListener("change", () => this.show(scene.takes[Number(choice.value)]));
     this.beside = toggle("Stand side by side", "Side by side", true, (on) => {
       this.apart = on;
       this.frame();
@@ -48,15 +48,16 @@ export class Stage {
         this.pose();
       }),
       button("Reset the camera", "Reset", () => this.frame()),
+      this.player.speeds,
     );
     const port = make("div", { class: "viewport", tabindex: "0", role: "group", "aria-label": "The stage: space plays, arrows step, A and D turn, W and S come nearer and go farther" },
-      this.view.canvas, tools);
+      this.view.canvas, this.legend, tools);
     port.addEventListener("keydown", (event) => this.turned(event));
-    const head = make("div", { class: "stage-head" });
-    if (scene.takes.length > 1) head.append(choice);
-    head.append(this.legend);
-    const transport = make("div", { class: "transport" }, this.player.play, this.player.time, this.player.speeds);
-    section.append(head, port, transport, make("div", { class: "time-axis" }, this.player.scrub, this.timeline.element), this.note);
+    if (scene.takes.length > 1) {
+      section.append(choice("Motion", scene.takes.map((take) => take.name), (i) => this.show(scene.takes[i])));
+    }
+    const transport = make("div", { class: "transport" }, make("div", { class: "gutter" }, this.player.play, this.player.time), this.player.scrub);
+    section.append(port, transport, this.timeline.element, this.note);
     this.show(this.take);
   }
 
@@ -77,7 +78,7 @@ export class Stage {
       const body = this.scene.bodies[actor.body];
       const figure = new Figure(body, FINE, actor.ghost ? 0.38 : null);
       this.view.content.add(figure.group);
-      const playing: Playing = { actor, figure, frames: places(actor.frames), width: 3 * body.points, shown: true };
+      const playing: Playing = { actor, figure, frames: places(actor.frames), colour: new THREE.Color(), shown: true };
       if (take.actors.length > 1) this.legend.append(this.entry(playing));
       return playing;
     });
@@ -98,30 +99,36 @@ export class Stage {
       this.pose();
     });
     const chip = make("i", { class: playing.actor.ghost ? "chip ghost" : "chip" });
-    chip.style.background = this.colour(playing.actor);
+    chip.style.background = playing.actor.colour === null ? neutral() : this.scene.palette[playing.actor.colour % this.scene.palette.length];
     return make("label", {}, box, chip, playing.actor.name);
   }
 
-  private colour(actor: Actor): string {
-    if (actor.colour !== null) return this.scene.palette[actor.colour % this.scene.palette.length];
-    // Who is alone wears the colour of what is happening.
-    const alone = this.playing.length === 1;
-    return (alone && this.timeline.colourNow()) || neutral();
+  /** The colour of an actor at a moment: its own, or that of what it does, which comes and goes in a tenth of a second. */
+  private dress({ actor, colour }: Playing, secs: number): THREE.Color {
+    colour.set(actor.colour === null ? neutral() : this.scene.palette[actor.colour % this.scene.palette.length]);
+    const track = actor.wears === null ? undefined : this.take.tracks[actor.wears];
+    if (track?.kind !== "spans") return colour;
+    for (const span of track.spans) {
+      if (span.colour === null || secs < span.start || secs > span.end) continue;
+      const there = Math.min(1, (secs - span.start) / FADE, (span.end - secs) / FADE);
+      return colour.lerp(new THREE.Color(this.scene.palette[span.colour % this.scene.palette.length]), 0.85 * there);
+    }
+    return colour;
   }
 
   /** Puts every body into its posture of the moment. */
   private pose(): void {
     const secs = this.player.secs;
     this.timeline.now(secs);
-    for (const { actor, figure, frames, width, shown } of this.playing) {
+    for (const playing of this.playing) {
+      const { actor, figure, frames, shown } = playing;
       const at = (secs - actor.start_secs) * actor.rate_hz;
       const here = at > -1 && at < actor.frames.rows;
       figure.group.visible = shown && here;
       if (!figure.group.visible) continue;
-      blend(frames, width, around(actor.frames.rows, at), figure.points);
+      figure.take(frames, around(actor.frames.rows, at));
       figure.group.position.fromArray(this.apart ? actor.aside : [0, 0, 0]);
-      figure.colour(this.colour(actor));
-      figure.update();
+      figure.colour(this.dress(playing, secs));
     }
     if (this.following) {
       this.middle(this.focus);
@@ -152,8 +159,8 @@ export class Stage {
     const wide = this.playing.map(({ actor }) => (this.apart ? Math.hypot(...actor.aside) : 0));
     const spread = Math.max(0, ...wide);
     this.view.reach = 1.7 + spread;
-    at.z = 0.92;
-    this.view.look(at, 4.3 + 1.0 * spread);
+    at.z = 0.95;
+    this.view.look(at, 4.0 + 0.9 * spread);
   }
 
   private turned(event: KeyboardEvent): void {

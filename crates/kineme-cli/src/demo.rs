@@ -1,9 +1,11 @@
-//! `kineme demo`: the choreographed session, from motion to vocabulary to page.
+//! `kineme demo`: what kineme does, on motion that comes with it.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use kineme_paper::demo::{self, Demo, Found, VOCABULARY};
+use kineme_paper::demo::{self, Demo, DemoSettings, Found};
 use kineme_paper::show::PLANS;
+use kineme_paper::table1::{Measure, Mode, Row};
 
 use crate::args::{DemoArgs, Global};
 use crate::failure::{Failure, print};
@@ -16,34 +18,35 @@ pub fn run(args: &DemoArgs, global: &Global) -> Result<u8, Failure> {
     let files: Vec<PathBuf> = Demo::files().iter().map(|f| args.out.join(f)).collect();
     refuse_existing(files.iter().map(PathBuf::as_path), global)?;
     let spinner = progress::spinner();
-    let found = demo::run(global.seed, &mut |stage| spinner.set_message(stage.name()));
-    spinner.finish_and_clear();
-    let found = found.map_err(|e| Failure::failed(e.to_string()))?;
-    let page = found
-        .write(&args.out, existing(global))
-        .map_err(unwritten)?;
-    let findings = Findings {
-        derived: &found.found.derived,
-        motions: &found.found.motions,
-        seconds: None,
+    let settings = DemoSettings {
+        seed: global.seed,
+        ..DemoSettings::default()
     };
+    let made = demo::run(&settings, &mut |step| spinner.set_message(step.name()));
+    spinner.set_message("writing the page");
+    let written = made.map(|made| (made.write(&args.out, existing(global)), made));
+    spinner.finish_and_clear();
+    let (page, made) = written.map_err(|e| Failure::failed(e.to_string()))?;
+    let page = page.map_err(unwritten)?;
     if global.json {
+        let findings = Findings {
+            derived: &made.found.derived,
+            motions: &made.found.motions,
+            seconds: None,
+        };
         print(findings.json()?.as_bytes())?;
         return Ok(0);
     }
+    let file = |name: &str| args.out.join(name).display().to_string();
+    let (movements, boxing) = (file(demo::MOVEMENTS_KNOWN), file(demo::BOXING));
     let text = format!(
-        "{}\nA choreographed session of {} recordings, {} movements in {} strokes, that recur in varied order, size and \
-         speed.\nWhat was found in it without being told:\n\n{}\n{}\nwritten:    {}\nto look at: {}\ntry next:   kineme control {} {} --body adonis\n",
-        shown(&found),
-        found.found.motions.len(),
-        found.found.movements.kinds,
-        found.found.strokes.kinds,
-        findings.text(),
-        judged(&found.found),
-        args.out.join(VOCABULARY).display(),
+        "{}\n{}\nOpen this page in a browser; everything on it moves:\n\n  {}\n\nNext:\n\n  \
+         kineme view {movements}\n  kineme classify {boxing} {}\n  kineme control {movements} {} --body adonis\n",
+        shown(&made),
+        told(&made.found),
         page.display(),
-        args.out.join(demo::MOVEMENTS_KNOWN).display(),
-        args.out.join(PLANS[0].0).display()
+        file(demo::ATTACKER),
+        file(PLANS[0].0),
     );
     print(text.as_bytes())?;
     Ok(0)
@@ -80,45 +83,60 @@ fn shown(found: &Demo) -> String {
             }
         })
         .collect();
+    let filter = |row: &&Row| row.mode == Mode::FILTER;
+    let judged = found.table.iter().filter(filter).map(|row| {
+        let percent = |measure| row.measure(measure).map(|e| 100.0 * e.value);
+        let accuracy = percent(Measure::Accuracy).unwrap_or(f64::NAN);
+        let recall =
+            percent(Measure::Recall).map_or(String::new(), |r| format!(", recall {r:.1} %"));
+        let never = percent(Measure::Never).unwrap_or(f64::NAN);
+        format!(
+            "  {}: accuracy {accuracy:.2} % ({never:.2} % for always denying){recall}\n",
+            row.set
+        )
+    });
     format!(
-        "{} primitives of written exemplars move two bodies and recognise what they do:\n\n{}  sparring: adonis answers {}\n",
+        "{} primitives of exemplars written by hand move two bodies:\n\n{}\nThe same primitives recognise what is done:\n\n  \
+         sparring: adonis answers {}\n{}",
         show.movements.primitives().len(),
         moved.collect::<String>(),
-        answers.join(", ")
+        answers.join(", "),
+        judged.collect::<String>()
     )
 }
 
-/// What was found beside what was choreographed.
-fn judged(found: &Found) -> String {
-    let rows: Vec<Vec<String>> = found
-        .derived
-        .groups
-        .iter()
-        .zip(&found.names)
-        .map(|(group, (stroke, count))| {
-            let size = group.segments.len();
-            vec![
-                group.name.clone(),
-                format!("{count} of {size}"),
-                stroke.clone(),
-            ]
-        })
-        .collect();
-    let header = [
-        ("group", Side::Left),
-        ("of one kind", Side::Right),
-        ("which is", Side::Left),
-    ];
-    let share = |what: &str, m: &demo::Match| {
-        format!(
-            "{what}: purity {:.2}, adjusted Rand index {:.2} (what is in no group counts against it)\n",
-            m.purity, m.ari
-        )
+/// What was found in the session, movement by movement as it was choreographed.
+fn told(found: &Found) -> String {
+    let mut movements: BTreeMap<&str, BTreeMap<&str, Vec<String>>> = BTreeMap::new();
+    for (group, (kind, count)) in found.derived.groups.iter().zip(&found.names) {
+        let (movement, stroke) = kind.split_once(' ').unwrap_or((kind, ""));
+        let all = group.segments.len();
+        let name = match all == *count {
+            true => group.name.clone(),
+            false => format!("{} ({count} of {all})", group.name),
+        };
+        let strokes = movements.entry(movement).or_default();
+        strokes.entry(stroke).or_default().push(name);
+    }
+    let row = |(movement, strokes): (&&str, &BTreeMap<&str, Vec<String>>)| {
+        let strokes = strokes
+            .iter()
+            .map(|(stroke, groups)| format!("{stroke}: {}", groups.join(" ")));
+        vec![
+            (*movement).to_owned(),
+            strokes.collect::<Vec<_>>().join(", "),
+        ]
     };
+    let rows: Vec<Vec<String>> = movements.iter().map(row).collect();
+    let left_over = found.derived.labels.iter().filter(|l| l.is_none()).count();
     format!(
-        "Judged by what was choreographed, which the derivation never saw:\n\n{}\n{}{}",
-        aligned(&header, &rows),
-        share("groups against strokes     ", &found.strokes),
-        share("behaviors against movements", &found.movements)
+        "In a session of {} recordings, told nothing, the derivation cut {} segments and found {} groups ({left_over} left \
+         over).\nBeside what was choreographed, purity {:.2}, adjusted Rand index {:.2}:\n\n{}",
+        found.motions.len(),
+        found.derived.segments.len(),
+        found.derived.groups.len(),
+        found.strokes.purity,
+        found.strokes.ari,
+        aligned(&[("movement", Side::Left), ("found as", Side::Left)], &rows)
     )
 }

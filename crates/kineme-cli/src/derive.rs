@@ -114,7 +114,7 @@ pub fn run(args: &DeriveArgs, global: &Global) -> Result<u8, Failure> {
             motions.len()
         );
         let summary = summary(&derived, &motions);
-        Report::of(&derived, &motions, &vocabulary, None, (&title, &summary))?
+        Report::of(&derived, &motions, &vocabulary, (&title, &summary))?
             .write(folder, existing(global))
             .map_err(unwritten)?;
     }

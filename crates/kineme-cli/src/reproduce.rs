@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
 use kineme_formats::output::{Existing, write_bytes};
+use kineme_paper::demo::find;
 use kineme_paper::encoding_test::encoding_test;
 use kineme_paper::paper_figures;
 use kineme_paper::table1::{MovementSettings, TableSettings, table1};
@@ -123,7 +124,8 @@ fn make(
     }
     if wants(Reproduced::Figures) {
         let mut watch = |name: &str| spinner.set_message(name.to_string());
-        let figures = paper_figures::draw(global.seed, &mut watch).map_err(failed)?;
+        let found = find(global.seed, &mut |_| {}).map_err(failed)?;
+        let figures = paper_figures::draw(&found, &mut watch).map_err(failed)?;
         paper_figures::write(&figures, &args.out, existing(global)).map_err(failed)?;
     }
     Ok(())

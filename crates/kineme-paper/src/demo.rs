@@ -16,10 +16,14 @@ use kineme::{Motion, Vocabulary, body};
 use kineme_formats::output::{self, Existing};
 use kineme_formats::tables::body_angles;
 use kineme_formats::{FormatError, Place, script, vocabulary};
+use kineme_report::{Figure, Page, Section};
 
-use crate::figures::{Report, summary};
+use crate::figures::{Findings, Report, summary};
+use crate::paper_figures::{CAPTIONS, NAMES, draw};
+use crate::scene::{CardBudget, cards, takes_of_show};
 use crate::sets::Result;
 use crate::show::{Act, PLANS, Show, show};
+use crate::table1::{MovementSettings, Row, embedded, table};
 
 const SESSION: &str = include_str!("../../../choreography/session.toml");
 const SESSION_FILE: &str = "choreography/session.toml";
@@ -33,7 +37,8 @@ pub const VOCABULARY: &str = "session.kineme";
 pub const MOVEMENTS_KNOWN: &str = "movements.kineme";
 /// See [`MOVEMENTS_KNOWN`].
 pub const BOXING: &str = "boxing.kineme";
-const ATTACKER: &str = "attacker.csv";
+/// The movement of who is sparred with.
+pub const ATTACKER: &str = "attacker.csv";
 
 /// Frames a second at which the session is performed.
 const RATE_HZ: f64 = 60.0;
@@ -62,6 +67,28 @@ pub struct Demo {
     pub found: Found,
     /// What bodies did with written primitives.
     pub show: Show,
+    /// Table I, as far as no corpus is needed.
+    pub table: Vec<Row>,
+    /// Figures 1 to 7 as SVG.
+    pub figures: [String; 7],
+}
+
+/// How much the demo does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DemoSettings {
+    /// Seed of everything that is drawn.
+    pub seed: u64,
+    /// Plans of the first set of Table I, and movements of each.
+    pub table: [usize; 2],
+}
+
+impl Default for DemoSettings {
+    fn default() -> Self {
+        Self {
+            seed: 0,
+            table: [4, 10],
+        }
+    }
 }
 
 /// What the demo is at.
@@ -71,6 +98,10 @@ pub enum Step {
     Deriving(Stage),
     /// The show.
     Showing(Act),
+    /// Table I.
+    Judging,
+    /// The figures.
+    Drawing,
 }
 
 impl Step {
@@ -79,6 +110,8 @@ impl Step {
         match self {
             Step::Deriving(stage) => stage.name(),
             Step::Showing(act) => act.name(),
+            Step::Judging => "judging the classifiers",
+            Step::Drawing => "drawing",
         }
     }
 }
@@ -104,14 +137,29 @@ struct Stroke {
     stroke: String,
 }
 
-/// Finds what is in the session, and puts the show on; `watch` hears of every step as it begins.
+/// Finds what is in the session, puts the show on, and makes the paper's table and figures again; `watch` hears of every
+/// step as it begins.
 ///
 /// # Errors
-/// As [`find`] and [`show`].
-pub fn run(seed: u64, watch: &mut dyn FnMut(Step)) -> Result<Demo> {
+/// As [`find`], [`show`], [`embedded`] and [`draw`].
+pub fn run(settings: &DemoSettings, watch: &mut dyn FnMut(Step)) -> Result<Demo> {
+    let seed = settings.seed;
+    let found = find(seed, &mut |stage| watch(Step::Deriving(stage)))?;
+    let show = show(seed, &mut |act| watch(Step::Showing(act)))?;
+    watch(Step::Judging);
+    let [clips, movements] = settings.table;
+    let sets = MovementSettings {
+        clips,
+        movements,
+        seed,
+    };
+    let table = embedded(&show.boxing, &sets)?;
+    watch(Step::Drawing);
     Ok(Demo {
-        found: find(seed, &mut |stage| watch(Step::Deriving(stage)))?,
-        show: show(seed, &mut |act| watch(Step::Showing(act)))?,
+        figures: draw(&found, &mut |_| {})?,
+        found,
+        show,
+        table,
     })
 }
 
@@ -178,12 +226,87 @@ impl Demo {
         let seen = self.show.attacker.seen.motion();
         let bytes = body_angles::table(seen).write(ATTACKER)?;
         output::write_bytes(&folder.join(ATTACKER), existing, &bytes)?;
+        let report = self.report().map_err(|e| {
+            FormatError::new(
+                VOCABULARY,
+                Place::File,
+                e.to_string(),
+                "a vocabulary to show",
+            )
+        });
+        report?.write(folder, existing)
+    }
+
+    /// The page: what was performed and recognised, the primitives that did it, what was found in the session, and
+    /// what the paper shows.
+    fn report(&self) -> kineme::Result<Report> {
+        let (show, found) = (&self.show, &self.found);
+        let mut page = Page {
+            title: "One vocabulary, two directions".into(),
+            summary: vec![
+                "A primitive is a function f(p, τ) from parameters and phase to posture, made of a few exemplars. Run \
+                 forward it moves the bodies below; run backward it says what they do, how far into it, and whether it \
+                 is anything known."
+                    .into(),
+            ],
+            ..Page::default()
+        };
+        page.scene.takes = takes_of_show(&mut page.scene, show);
+        let budget = CardBudget {
+            bytes: CardBudget::default().bytes / 2,
+            ..CardBudget::default()
+        };
+        page.scene.primitives = cards(&mut page.scene, &show.movements, &budget)?.0;
+        page.sections.push(Section {
+            title: "Primitives".into(),
+            text: vec![format!(
+                "{} primitives of exemplars that were written by hand: they moved the bodies above and recognised them. On \
+                 the left of each the exemplars, on the right what the sliders ask for, also where nobody wrote an \
+                 exemplar; marks on the sliders are exemplars.",
+                show.movements.primitives().len()
+            )],
+            cards: 0..page.scene.primitives.len(),
+            ..Section::default()
+        });
+        let findings = Findings {
+            derived: &found.derived,
+            motions: &found.motions,
+            vocabulary: &found.vocabulary,
+            known: &found.known(),
+        };
+        let titles = ["Found by itself", "How it was found"];
+        let figures = findings.put_on(&mut page, titles, &self.told(), &budget)?;
+        page.sections.push(Section {
+            title: "Table I".into(),
+            tables: vec![table(&self.table)],
+            ..Section::default()
+        });
+        let drawn = NAMES.iter().zip(CAPTIONS).zip(&self.figures);
+        page.sections.push(Section {
+            title: "Figures 1 to 7".into(),
+            text: vec![
+                "The figures of the paper, each drawn from what this program computes on the movements that come with \
+                 it."
+                .into(),
+            ],
+            figures: drawn
+                .map(|((name, caption), svg)| Figure {
+                    title: name.replace("figure", "Figure "),
+                    caption: caption.into(),
+                    svg: svg.clone(),
+                })
+                .collect(),
+            ..Section::default()
+        });
+        Ok(Report::new(&page, figures))
+    }
+
+    /// What was found in the session, in paragraphs.
+    fn told(&self) -> Vec<String> {
         let mut paragraphs = vec![
-            "Written exemplars became primitives; by these, two bodies performed a routine and one of them sparred, and \
-             what was seen was read back by the same primitives. Sliders below ask them for movements that nobody wrote."
-                .to_string(),
-            "A choreographed session of eight movements was cut into segments, and segments that are alike were \
-             grouped. Nobody told the procedure what the movements are."
+            "A choreographed session of eight movements (the takes after the first three) was cut into segments, and \
+             segments that are alike and lead to the like were grouped. Nobody told the procedure what the movements are; \
+             each group became a primitive."
                 .to_string(),
         ];
         paragraphs.extend(summary(&self.found.derived, &self.found.motions));
@@ -195,23 +318,7 @@ impl Demo {
             100.0 * self.found.movements.purity,
             self.found.movements.ari
         ));
-        let title = "One vocabulary, two directions";
-        let report = Report::of(
-            &self.found.derived,
-            &self.found.motions,
-            &self.found.vocabulary,
-            Some(&self.show),
-            (title, &paragraphs),
-        );
-        let refused = |e: kineme::Error| {
-            FormatError::new(
-                VOCABULARY,
-                Place::File,
-                e.to_string(),
-                "a vocabulary to show",
-            )
-        };
-        report.map_err(refused)?.write(folder, existing)
+        paragraphs
     }
 
     /// The names of the files that [`Self::write`] writes.
@@ -220,6 +327,19 @@ impl Demo {
         names.extend(PLANS.map(|(file, _)| file));
         names.extend(Report::names());
         names
+    }
+}
+
+impl Found {
+    /// What each group is, with how many of its segments are that.
+    fn known(&self) -> Vec<String> {
+        let groups = self.derived.groups.iter().zip(&self.names);
+        groups
+            .map(|(group, (stroke, count))| match group.segments.len() {
+                all if all == *count => stroke.clone(),
+                all => format!("{stroke}, {count} of {all}"),
+            })
+            .collect()
     }
 }
 

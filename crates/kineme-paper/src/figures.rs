@@ -7,11 +7,10 @@ use kineme::skeleton::Skeleton;
 use kineme::{Motion, Vocabulary};
 use kineme_formats::output::{self, Existing};
 use kineme_report::scene::Scene;
-use kineme_report::{Figure, GroupPaths, Page, Row, Span};
+use kineme_report::{Figure, GroupPaths, Page, Row, Section, Span};
 use rayon::prelude::*;
 
-use crate::scene::{CardBudget, Shape, Shown, cards, take_of_derived, takes_of_show};
-use crate::show::Show;
+use crate::scene::{CardBudget, Shape, Shown, cards, take_of_derived};
 
 /// The page among the files of a report.
 pub const PAGE: &str = "index.html";
@@ -23,9 +22,18 @@ pub struct Report {
     pub files: Vec<(&'static str, String)>,
 }
 
+/// What was derived, to be put on a page.
+pub(crate) struct Findings<'a> {
+    pub derived: &'a Derived,
+    pub motions: &'a [Motion],
+    pub vocabulary: &'a Vocabulary,
+    /// What each group is, where somebody knows it; else empty.
+    pub known: &'a [String],
+}
+
 impl Report {
     /// What was derived from `motions` and the vocabulary made of it, moving and as figures, on a page with this title
-    /// and these paragraphs; before it a show, where there is one.
+    /// and these paragraphs.
     ///
     /// # Errors
     /// When a primitive refuses its own parameters.
@@ -33,21 +41,30 @@ impl Report {
         derived: &Derived,
         motions: &[Motion],
         vocabulary: &Vocabulary,
-        show: Option<&Show>,
         (title, summary): (&str, &[String]),
     ) -> kineme::Result<Self> {
-        let figures = figures(derived, motions);
-        let (scene, notes) = scene(derived, motions, vocabulary, show)?;
-        let page = Page {
+        let (first, more) = summary.split_at(summary.len().min(1));
+        let mut page = Page {
             title: title.into(),
-            summary: [summary, &notes].concat(),
-            scene,
-            tables: Vec::new(),
-            figures: figures.iter().map(|(_, f)| f.clone()).collect(),
+            summary: first.to_vec(),
+            ..Page::default()
         };
+        let findings = Findings {
+            derived,
+            motions,
+            vocabulary,
+            known: &[],
+        };
+        let budget = CardBudget::default();
+        let figures = findings.put_on(&mut page, ["Primitives", "Figures"], more, &budget)?;
+        Ok(Self::new(&page, figures))
+    }
+
+    /// A page, and the figures that are files of their own, too.
+    pub(crate) fn new(page: &Page, figures: [(&'static str, Figure); 5]) -> Self {
         let mut files = vec![(PAGE, page.html())];
         files.extend(figures.map(|(name, figure)| (name, figure.svg)));
-        Ok(Self { files })
+        Self { files }
     }
 
     /// The names of the files that every report has.
@@ -77,49 +94,69 @@ impl Report {
 /// Bytes of page for the motions that were cut.
 const TAKES_BYTES: usize = 3_500_000;
 
-/// The motions with their groups over time, the groups as primitives, and what had to be left out.
-fn scene(
-    derived: &Derived,
-    motions: &[Motion],
-    vocabulary: &Vocabulary,
-    show: Option<&Show>,
-) -> kineme::Result<(Scene, Vec<String>)> {
-    let mut scene = Scene::default();
-    let mut budget = CardBudget::default();
-    if let Some(show) = show {
-        budget.bytes /= 2;
-        scene.takes = takes_of_show(&mut scene, show);
-        scene.primitives = cards(&mut scene, &show.movements, &budget)?.0;
+impl Findings<'_> {
+    /// Puts the motions with their groups over time on the stage of a page, and below a section of the groups as
+    /// primitives, with this text, and one of figures, which it returns as well.
+    ///
+    /// # Errors
+    /// When a primitive refuses its own parameters.
+    pub(crate) fn put_on(
+        &self,
+        page: &mut Page,
+        titles: [&str; 2],
+        text: &[String],
+        budget: &CardBudget,
+    ) -> kineme::Result<[(&'static str, Figure); 5]> {
+        let mut notes = self.takes(&mut page.scene);
+        let (mut found, left_out) = cards(&mut page.scene, self.vocabulary, budget)?;
+        for (card, what) in found.iter_mut().zip(self.known) {
+            card.facts
+                .insert(0, ["choreographed as".into(), what.clone()]);
+        }
+        if left_out > 0 {
+            let all = self.vocabulary.primitives().len();
+            notes.push(format!(
+                "The first {} of {all} primitives are shown moving.",
+                all - left_out
+            ));
+        }
+        let first = page.scene.primitives.len();
+        page.scene.primitives.extend(found);
+        page.sections.push(Section {
+            title: titles[0].into(),
+            text: [text, &notes].concat(),
+            cards: first..page.scene.primitives.len(),
+            ..Section::default()
+        });
+        let figures = figures(self.derived, self.motions);
+        page.sections.push(Section {
+            title: titles[1].into(),
+            figures: figures.iter().map(|(_, f)| f.clone()).collect(),
+            ..Section::default()
+        });
+        Ok(figures)
     }
-    let points = Shape::of(vocabulary.body()).body.points;
-    let sizes: Vec<(f64, usize)> = motions
-        .iter()
-        .map(|m| (m.duration_secs(), points))
-        .collect();
-    let shown = Shown::within(TAKES_BYTES, &sizes);
-    for i in 0..shown.takes {
-        let take = take_of_derived(&mut scene, derived, motions, i, shown.rate_hz);
-        scene.takes.push(take);
-    }
-    let (found, left_out) = cards(&mut scene, vocabulary, &budget)?;
-    scene.primitives.extend(found);
-    let mut notes = Vec::new();
-    if shown.takes < motions.len() {
-        notes.push(format!(
+
+    /// As many of the motions as there is room for, and what had to be left out.
+    fn takes(&self, scene: &mut Scene) -> Vec<String> {
+        let points = Shape::of(self.vocabulary.body()).body.points;
+        let size = |m: &Motion| (m.duration_secs(), points);
+        let sizes: Vec<(f64, usize)> = self.motions.iter().map(size).collect();
+        let shown = Shown::within(TAKES_BYTES, &sizes);
+        for i in 0..shown.takes {
+            let take = take_of_derived(scene, self.derived, self.motions, i, shown.rate_hz);
+            scene.takes.push(take);
+        }
+        if shown.takes == self.motions.len() {
+            return Vec::new();
+        }
+        vec![format!(
             "To keep this page small, the first {} of {} motions play on it, {} frames a second of each.",
             shown.takes,
-            motions.len(),
+            self.motions.len(),
             shown.rate_hz
-        ));
+        )]
     }
-    if left_out > 0 {
-        notes.push(format!(
-            "The first {} of {} primitives are shown moving.",
-            vocabulary.primitives().len() - left_out,
-            vocabulary.primitives().len()
-        ));
-    }
-    Ok((scene, notes))
 }
 
 /// The five figures in the order of the page, each with its file's name.

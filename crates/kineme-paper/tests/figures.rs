@@ -296,6 +296,8 @@ fn figure_7_is_winner_take_all_and_concatenates_what_the_winners_predict() {
 #[test]
 fn figures_are_the_same_bytes_on_one_thread_and_on_many() {
     let folder = tempfile::tempdir().expect("a folder");
+    // Made before there is a pool: whose threads would else wait for it and for each other.
+    demo();
     let of = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -303,7 +305,7 @@ fn figures_are_the_same_bytes_on_one_thread_and_on_many() {
             .expect("threads");
         let place = folder.path().join(threads.to_string());
         pool.install(|| {
-            let figures = draw(0, &mut |_| {}).expect("figures");
+            let figures = draw(demo(), &mut |_| {}).expect("figures");
             write(&figures, &place, Existing::Keep).expect("written");
             assert!(write(&figures, &place, Existing::Keep).is_err(), "kept");
         });

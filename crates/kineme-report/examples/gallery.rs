@@ -54,7 +54,11 @@ fn main() -> std::io::Result<()> {
         let page = report::Page {
             title: format!("A {size} vocabulary"),
             summary: summary.to_vec(),
-            figures: shown,
+            sections: vec![report::Section {
+                title: "Figures".to_owned(),
+                figures: shown,
+                ..report::Section::default()
+            }],
             ..report::Page::default()
         };
         std::fs::write(folder.join(format!("{size}.html")), page.html())?;

@@ -34,7 +34,7 @@ mod viewer;
 
 pub use embedding::{Embedding, embedding};
 pub use hand_paths::{GroupPaths, LOW_COHERENCE, hand_paths};
-pub use page::{Figure, Page};
+pub use page::{Figure, Page, Section};
 #[cfg(feature = "png")]
 pub use png::{PngError, png};
 pub use residual::residual_variance;

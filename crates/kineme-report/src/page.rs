@@ -1,5 +1,7 @@
 //! One page of HTML: movement in three dimensions, figures and tables. Opens from a file, offline.
 
+use std::ops::Range;
+
 use serde::Serialize;
 
 use crate::palette::{COLOURS, colour};
@@ -25,10 +27,23 @@ pub struct Figure {
 pub struct Page {
     /// Its title.
     pub title: String,
-    /// Paragraphs of plain text.
+    /// Paragraphs of plain text, above what is on the stage.
     pub summary: Vec<String>,
-    /// What moves.
+    /// What moves: takes on the stage, primitives in the sections.
     pub scene: Scene,
+    /// What stands below the stage.
+    pub sections: Vec<Section>,
+}
+
+/// A part of a page under a heading of its own.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Section {
+    /// Its heading.
+    pub title: String,
+    /// Paragraphs of plain text.
+    pub text: Vec<String>,
+    /// Which of the scene's primitives have their cards here.
+    pub cards: Range<usize>,
     /// Tables.
     pub tables: Vec<Table>,
     /// Still figures.
@@ -59,31 +74,15 @@ impl Page {
              <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n\
              <meta name=\"color-scheme\" content=\"light dark\">\n\
              <title>{title}</title>\n<style>\n{STYLE}{more_style}</style>\n</head>\n<body>\n<main>\n\
-             <header>\n<h1>{title}</h1>\n"
+             <header>\n<h1>{title}</h1>\n{}{}</header>\n",
+            self.contents(),
+            paragraphs(&self.summary)
         );
-        // The first paragraph says what this is; then comes what moves, then what there is to say of it.
-        let (first, more) = self.summary.split_at(self.summary.len().min(1));
-        html.push_str(&paragraphs(first));
-        html.push_str("</header>\n");
         if !self.scene.is_empty() {
             html.push_str(&self.stage(moving.is_some()));
         }
-        html.push_str(&paragraphs(more));
-        html.push_str(&self.cards());
-        for table in &self.tables {
-            html.push_str(&table.html());
-        }
-        for Figure {
-            title,
-            caption,
-            svg,
-        } in &self.figures
-        {
-            let (title, caption) = (escape(title), escape(caption));
-            html.push_str(&format!(
-                "<figure aria-label=\"{title}\">\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" \
-                 aria-label=\"{title}\">\n{svg}</div>\n<figcaption>{caption}</figcaption>\n</figure>\n"
-            ));
+        for (i, section) in self.sections.iter().enumerate() {
+            html.push_str(&self.section(i, section));
         }
         html.push_str("</main>\n");
         if let Some((script, _)) = moving {
@@ -118,24 +117,44 @@ impl Page {
         html
     }
 
-    /// The cards as they are seen without the viewer, which puts what moves into them.
-    fn cards(&self) -> String {
-        if self.scene.primitives.is_empty() {
+    /// Where to find what, where there is enough to be lost in.
+    fn contents(&self) -> String {
+        if self.sections.len() < 2 {
             return String::new();
         }
-        let mut html = "<section id=\"primitives\" aria-label=\"Primitives\">\n<h2>Primitives</h2>\n<div class=\"cards\">\n".to_owned();
-        for card in &self.scene.primitives {
-            html.push_str(&self.card(card));
+        let link = |(i, section): (usize, &Section)| {
+            format!("<a href=\"#section-{i}\">{}</a>\n", escape(&section.title))
+        };
+        let links: String = self.sections.iter().enumerate().map(link).collect();
+        format!("<nav aria-label=\"On this page\">\n{links}</nav>\n")
+    }
+
+    fn section(&self, number: usize, section: &Section) -> String {
+        let title = escape(&section.title);
+        let mut html = format!(
+            "<section id=\"section-{number}\" aria-label=\"{title}\">\n<h2>{title}</h2>\n{}",
+            paragraphs(&section.text)
+        );
+        let cards = self.scene.primitives.get(section.cards.clone());
+        if let Some(cards) = cards.filter(|cards| !cards.is_empty()) {
+            html.push_str("<div class=\"cards\">\n");
+            for (i, card) in section.cards.clone().zip(cards) {
+                html.push_str(&self.card(i, card));
+            }
+            html.push_str("</div>\n");
         }
-        html.push_str("</div>\n</section>\n");
+        html.extend(section.tables.iter().map(Table::html));
+        html.extend(section.figures.iter().map(Figure::html));
+        html.push_str("</section>\n");
         html
     }
 
-    /// A primitive as it is seen without the viewer: in the middle of its parameters, phase by phase.
-    fn card(&self, card: &Card) -> String {
+    /// A primitive as it is seen without the viewer, which puts what moves into its card: in the middle of its
+    /// parameters, phase by phase.
+    fn card(&self, number: usize, card: &Card) -> String {
         let name = escape(&card.name);
         let mut html = format!(
-            "<article class=\"card\" style=\"--hue:{}\">\n<h3>{name}</h3>\n",
+            "<article class=\"card\" data-card=\"{number}\" style=\"--hue:{}\">\n<h3>{name}</h3>\n",
             colour(card.colour)
         );
         if !card.doubt.is_empty() {
@@ -160,6 +179,17 @@ impl Page {
         }
         html.push_str("</dl>\n</article>\n");
         html
+    }
+}
+
+impl Figure {
+    fn html(&self) -> String {
+        let (title, caption) = (escape(&self.title), escape(&self.caption));
+        format!(
+            "<figure aria-label=\"{title}\">\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" \
+             aria-label=\"{title}\">\n{}</div>\n<figcaption>{caption}</figcaption>\n</figure>\n",
+            self.svg
+        )
     }
 }
 

@@ -34,6 +34,9 @@ pub struct Body {
     pub points: usize,
     /// The point that a camera follows.
     pub centre: usize,
+    /// The point that each point hangs on: it turns about it and keeps its distance between two frames. `None` for one
+    /// that goes its own way.
+    pub parents: Vec<Option<usize>>,
     /// What is drawn between the points.
     pub bones: Vec<Bone>,
     /// Points whose path is worth a line: the hands.
@@ -75,6 +78,8 @@ pub struct Actor {
     pub colour: Option<usize>,
     /// Whether it is seen through.
     pub ghost: bool,
+    /// The track of the take, one of spans, whose colour of the moment it wears.
+    pub wears: Option<usize>,
     /// Frames a second.
     pub rate_hz: f64,
     /// When its first frame is, seconds.

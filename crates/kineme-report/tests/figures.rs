@@ -3,8 +3,8 @@
 mod made_up;
 
 use kineme_report::{
-    Embedding, Figure, GroupPaths, Page, Row, Span, embedding, hand_paths, residual_variance,
-    timeline, transitions,
+    Embedding, Figure, GroupPaths, Page, Row, Section, Span, embedding, hand_paths,
+    residual_variance, timeline, transitions,
 };
 use made_up::{MadeUp, made_up};
 
@@ -301,7 +301,11 @@ fn the_page_holds_its_figures_and_loads_nothing() {
     let page = Page {
         title: "Vocabulary".into(),
         summary: vec!["First.".into()],
-        figures: vec![figure.clone(), figure],
+        sections: vec![Section {
+            title: "Figures".into(),
+            figures: vec![figure.clone(), figure],
+            ..Section::default()
+        }],
         ..Page::default()
     };
     let html = page.html();

@@ -15,8 +15,8 @@ use kineme::primitive::{Observations, Recogniser, readings};
 use kineme_formats::{output, plan};
 use kineme_paper::figures::PAGE;
 use kineme_paper::scene::take_of_performance;
-use kineme_report::Page;
 use kineme_report::scene::Scene;
+use kineme_report::{Page, Section};
 
 use crate::args::{ControlArgs, Global, Written};
 use crate::failure::{Failure, complain, print};
@@ -51,16 +51,16 @@ pub fn run(args: &ControlArgs, global: &Global) -> Result<u8, Failure> {
         let bytes = format.bytes(&performance.done)?;
         output::write_bytes(out, existing(global), &bytes).map_err(unwritten)?;
     }
-    if let Some(page) = &page {
-        let html = shown(&name, &vocabulary, &performance, watched.as_ref())?;
-        output::write_bytes(page, existing(global), html.as_bytes()).map_err(unwritten)?;
-    }
     let told = told::Told::of(
         &performance,
         &vocabulary,
         robot.is_physical(),
         args.timings.then_some(factor),
     );
+    if let Some(page) = &page {
+        let html = shown(&name, &vocabulary, &performance, &told, watched.as_ref())?;
+        output::write_bytes(page, existing(global), html.as_bytes()).map_err(unwritten)?;
+    }
     let text = match global.json {
         true => crate::json::line(&told)?,
         false => told.text([args.out.as_deref(), page.as_deref()]),
@@ -130,6 +130,7 @@ fn shown(
     plan: &str,
     vocabulary: &Vocabulary,
     performance: &Performance,
+    told: &told::Told,
     watched: Option<&Watched>,
 ) -> Result<String, Failure> {
     let seen = match watched {
@@ -145,8 +146,13 @@ fn shown(
     scene.takes.push(take);
     let page = Page {
         title: format!("{plan} on {}", performance.done.skeleton().name()),
+        summary: vec![told.tracking()],
         scene,
-        ..Page::default()
+        sections: vec![Section {
+            title: "What ran".into(),
+            tables: vec![told.table()],
+            ..Section::default()
+        }],
     };
     Ok(page.html())
 }

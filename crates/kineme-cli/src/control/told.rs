@@ -6,9 +6,18 @@ use std::path::Path;
 use kineme::Vocabulary;
 use kineme::control::Place;
 use kineme::interaction::Performance;
+use kineme_report::Table;
 use serde::Serialize;
 
 use crate::table::{Side, aligned};
+
+const HEADER: [(&str, Side); 5] = [
+    ("start", Side::Right),
+    ("end", Side::Right),
+    ("primitive", Side::Left),
+    ("joints", Side::Left),
+    ("", Side::Left),
+];
 
 /// A performance, as `--json` tells it.
 #[derive(Serialize)]
@@ -89,14 +98,7 @@ impl Told {
         if rows.is_empty() {
             text.push_str("No behavior ran: the body stood still.\n");
         } else {
-            let header = [
-                ("start", Side::Right),
-                ("end", Side::Right),
-                ("primitive", Side::Left),
-                ("joints", Side::Left),
-                ("", Side::Left),
-            ];
-            text.push_str(&aligned(&header, &rows));
+            text.push_str(&aligned(&HEADER, &rows));
         }
         let seen: Vec<String> = self
             .noticed
@@ -106,23 +108,7 @@ impl Told {
         if !seen.is_empty() {
             let _ = writeln!(text, "\nnoticed: {}", seen.join(", "));
         }
-        let _ = match self.physics {
-            true => writeln!(
-                text,
-                "\n{} ({} degrees of freedom) came within {} degrees of what it was told (root mean square; {} at \
-                 most), with {:.2} % of its torques at their limit",
-                self.body,
-                self.dof,
-                few(self.tracking_rms_rad.to_degrees()),
-                few(self.tracking_max_rad.to_degrees()),
-                100.0 * self.saturated_fraction
-            ),
-            false => writeln!(
-                text,
-                "\n{} ({} degrees of freedom) was moved without physics: it is where it was told to be",
-                self.body, self.dof
-            ),
-        };
+        let _ = writeln!(text, "\n{}", self.tracking());
         if let Some(factor) = self.real_time_factor {
             let _ = writeln!(text, "{:.1} s took {factor:.1} times less", self.seconds);
         }
@@ -130,6 +116,30 @@ impl Told {
             let _ = writeln!(text, "written: {}", path.display());
         }
         text
+    }
+
+    /// How near the body came to what it was told, in a sentence.
+    pub fn tracking(&self) -> String {
+        let body = format!("{} ({} degrees of freedom)", self.body, self.dof);
+        if !self.physics {
+            return format!("{body} was moved without physics: it is where it was told to be");
+        }
+        format!(
+            "{body} came within {} degrees of what it was told (root mean square; {} at most), with {:.2} % of its \
+             torques at their limit",
+            few(self.tracking_rms_rad.to_degrees()),
+            few(self.tracking_max_rad.to_degrees()),
+            100.0 * self.saturated_fraction
+        )
+    }
+
+    /// What ran, as a table of a page.
+    pub fn table(&self) -> Table {
+        Table {
+            caption: "Behaviors as they ran, seconds.".into(),
+            header: HEADER.map(|(name, _)| name.to_owned()).to_vec(),
+            rows: self.behaviors.iter().map(ToldRun::row).collect(),
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use kineme::retargeting::RoleMap;
 use kineme::{Motion, Recording, Vocabulary};
 use kineme_paper::scene::{CardBudget, Shape, Shown, actor, actor_of_recording, cards};
 use kineme_report::scene::{Scene, Take};
-use kineme_report::{Page, Table};
+use kineme_report::{Page, Section, Table};
 
 use crate::args::ViewArgs;
 use crate::bodies;
@@ -99,12 +99,14 @@ fn page_of(taken: &[Taken]) -> Page {
         title,
         summary,
         scene,
-        tables: if taken.len() > 1 {
-            vec![table(taken)]
-        } else {
-            Vec::new()
+        sections: match taken {
+            [_] => Vec::new(),
+            all => vec![Section {
+                title: "Files".into(),
+                tables: vec![table(all)],
+                ..Section::default()
+            }],
         },
-        figures: Vec::new(),
     }
 }
 
@@ -184,6 +186,11 @@ pub fn of_vocabulary(vocabulary: &Vocabulary, name: &str) -> Result<Page, Failur
     };
     let (cards, left_out) = cards(&mut scene, vocabulary, &budget)?;
     scene.primitives = cards;
+    let section = Section {
+        title: "Primitives".into(),
+        cards: 0..scene.primitives.len(),
+        ..Section::default()
+    };
     let all = vocabulary.primitives().len();
     let exemplars: usize = vocabulary
         .primitives()
@@ -210,6 +217,6 @@ pub fn of_vocabulary(vocabulary: &Vocabulary, name: &str) -> Result<Page, Failur
         title: name.into(),
         summary,
         scene,
-        ..Page::default()
+        sections: vec![section],
     })
 }

@@ -25,7 +25,7 @@ use kineme_formats::script;
 use kineme_report::paper;
 use rayon::prelude::*;
 
-use crate::demo;
+use crate::demo::Found;
 use crate::sets::Result;
 
 /// Pixels of a PNG to one of its SVG.
@@ -74,15 +74,29 @@ pub fn files() -> Vec<String> {
     NAMES.iter().flat_map(both).collect()
 }
 
-/// Figures 1 to 7 as SVG, in their order; `watch` hears of each as it begins. The seed is that of the derivation behind
-/// Figure 1, everything else draws nothing at random.
+/// What each figure shows and how to read it.
+pub const CAPTIONS: [&str; 7] = [
+    "Hand trajectories of groups that were found in the session: three behaviors, and the least coherent group, since the \
+     paper shows one that nobody meant. Dashed is what their primitives interpolate.",
+    "A primitive as a flowfield: horizontal waving in the first two principal coordinates of its postures. Arrows are \
+     updates of the field, bold lines its exemplars.",
+    "How motion is synthesized: flowfields propose, an arbitrator decides, a body moves. Each box is a module.",
+    "Classification, first step: when does the observed joint have the observed value? Between the envelopes lies all that \
+     the primitive can do with it; the interval of phase is where they enclose the value. Green is the exact answer.",
+    "Classification, second step: what the next joint may do within that interval of phase.",
+    "Classification, third step: the density that comes of sampling there, as published and exactly.",
+    "Trajectory encoding: decision by decision, the primitive that predicts the hands' path best, and the motion that \
+     follows from its joints.",
+];
+
+/// Figures 1 to 7 as SVG, in their order; `watch` hears of each as it begins. Figure 1 is of what was found in the
+/// session, everything else draws nothing at random.
 ///
 /// # Errors
 /// When a choreography that comes with the program is not sound, or a step of the computation fails.
-pub fn draw(seed: u64, watch: &mut dyn FnMut(&'static str)) -> Result<[String; 7]> {
+pub fn draw(found: &Found, watch: &mut dyn FnMut(&'static str)) -> Result<[String; 7]> {
     watch("figure1");
-    let derived = demo::find(seed, &mut |_| {})?;
-    let hands = paper::hand_panels(&panels(&derived)?);
+    let hands = paper::hand_panels(&panels(found)?);
     watch("figure2");
     let ares = Arc::new(kineme::ares()?);
     let waving = vocabulary(&["horizontal-waving.toml"], &ares)?;

@@ -192,16 +192,37 @@ impl<'a> Builder<'a> {
     fn finish(self, name: &str) -> Shape {
         let hips = self.roles.get(&Role::Hips).copied().unwrap_or(0);
         let centre = self.at_joint.get(&hips).copied().unwrap_or(0);
+        let parents = self.spots.iter().map(|spot| self.hangs_on(spot)).collect();
         Shape {
             body: Body {
                 name: name.into(),
                 points: self.spots.len(),
                 centre,
+                parents,
                 bones: self.bones,
                 tips: self.tips,
             },
             spots: self.spots,
         }
+    }
+
+    /// The point at whose joint a part turns, for what lies on the part.
+    fn hangs_on(&self, spot: &Spot) -> Option<usize> {
+        let (mut at, include) = match *spot {
+            Spot::Joint(j) => (j, false),
+            Spot::Fixed(j, _) => (j, true),
+            Spot::Between(a, ..) => return Some(a),
+        };
+        if include && let Some(&point) = self.at_joint.get(&at) {
+            return Some(point);
+        }
+        while let Some(parent) = self.joints[at].parent {
+            if let Some(&point) = self.at_joint.get(&parent) {
+                return Some(point);
+            }
+            at = parent;
+        }
+        None
     }
 
     fn spot(&mut self, spot: Spot) -> usize {

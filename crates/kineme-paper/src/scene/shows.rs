@@ -43,21 +43,24 @@ fn routine(scene: &mut Scene, show: &Show) -> Take {
         false => "Without physics: the bodies are where they are told to be.".into(),
     };
     let mut left = actor(scene, "Adonis", &adonis.done, FRAMES_HZ);
+    left.wears = Some(0);
     left.aside = [0.0, 0.5 * ASIDE_M, 0.0];
     let mut right = actor(scene, "Ares", &ares.done, FRAMES_HZ);
+    right.wears = Some(0);
     right.aside = [0.0, -0.5 * ASIDE_M, 0.0];
     Take {
         name: "A routine".into(),
         note: format!(
             "One plan, two bodies: movements one after the other, two at a time, one that interrupts another, one to a \
-             point. {physics} Below, what the filter makes of what Ares does."
+             point. {physics} What Ares did is recognised by the same primitives that moved it; two movements at a time \
+             are none of them."
         ),
         secs: ares.done.duration_secs(),
         actors: vec![left, right],
         tracks: vec![
-            ran("Behaviors of the plan", ares, &show.movements),
+            ran("Plan, as it ran", ares, &show.movements),
             posterior(
-                "Recognised, by joint angles",
+                "Recognised of Ares, by joint angles",
                 &show.movements,
                 &show.readings,
                 ares.done.rate_hz(),
@@ -86,6 +89,10 @@ fn bout(scene: &mut Scene, show: &Show) -> Take {
         "Adonis watches the attacker's joints, recognises the attack and answers with a shield."
             .into();
     take.tracks.insert(0, attacks);
+    // The track before the others: everybody's is one further on, and the attacker does what it tells.
+    for actor in &mut take.actors {
+        actor.wears = Some(actor.wears.map_or(0, |track| track + 1));
+    }
     take
 }
 
@@ -104,13 +111,13 @@ pub fn take_of_performance(
         actors: vec![actor(scene, &name, done, FRAMES_HZ)],
         ..Take::default()
     };
+    take.actors[0].wears = Some(usize::from(watched.is_some()));
     if let Some((seen, readings)) = watched {
-        let mut other = actor(scene, "Watched", seen, FRAMES_HZ);
-        other.colour = Some(1);
+        let other = actor(scene, "Watched", seen, FRAMES_HZ);
         take.actors.push(other);
         take.secs = take.secs.max(seen.duration_secs());
         take.tracks.push(posterior(
-            "What is made of what is watched",
+            "Recognised of who is watched",
             vocabulary,
             readings,
             seen.rate_hz(),
@@ -128,7 +135,7 @@ fn error(name: &str, performance: &Performance) -> Track {
         MOMENTS_HZ,
     );
     Track::Line {
-        title: format!("{name}, degrees from what it was told"),
+        title: format!("{name}, degrees off what it was told"),
         rate_hz,
         start_secs: 0.0,
         values: Floats::pack(off(&performance.commanded, &performance.done)),
@@ -137,10 +144,15 @@ fn error(name: &str, performance: &Performance) -> Track {
 
 fn encoded(scene: &mut Scene, show: &Show) -> Take {
     let observed = &show.routine[1].done;
-    let hands = actor(scene, "Observed", observed, FRAMES_HZ);
+    let hands = Actor {
+        wears: Some(0),
+        aside: [0.0, 0.5 * ASIDE_M, 0.0],
+        ..actor(scene, "Observed", observed, FRAMES_HZ)
+    };
     let ghost = Actor {
         ghost: true,
-        colour: Some(0),
+        wears: Some(1),
+        aside: [0.0, -0.5 * ASIDE_M, 0.0],
         ..actor(scene, "Encoded", &show.encoding.motion, FRAMES_HZ)
     };
     let name = |k: usize| show.movements.primitives()[k].name();
@@ -156,14 +168,15 @@ fn encoded(scene: &mut Scene, show: &Show) -> Take {
     });
     Take {
         name: "Read by the hands alone".into(),
-        note: "Only where the hands are was seen; the second figure is the movement said again in the vocabulary's joints."
+        note: "Only the paths of the hands were seen of Ares. The figure seen through is its movement said again in the joints of the \
+               vocabulary, by the primitives that predict those paths best."
             .into(),
         secs: observed.duration_secs(),
         actors: vec![hands, ghost],
         tracks: vec![
-            ran("Behaviors of the plan", &show.routine[1], &show.movements),
+            ran("Plan, as it ran", &show.routine[1], &show.movements),
             Track::Spans {
-                title: "Encoded".into(),
+                title: "Encoded as".into(),
                 spans: spans.collect(),
             },
         ],

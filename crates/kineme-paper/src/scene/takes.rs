@@ -162,7 +162,10 @@ pub fn take_of_derived(
         name: of.name().into(),
         note: String::new(),
         secs: of.duration_secs(),
-        actors: vec![actor(scene, of.skeleton().name(), of, most_hz)],
+        actors: vec![Actor {
+            wears: Some(0),
+            ..actor(scene, of.skeleton().name(), of, most_hz)
+        }],
         tracks: spans(derived, motions, motion),
     }
 }

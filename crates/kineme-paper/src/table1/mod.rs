@@ -7,6 +7,7 @@
 mod captured;
 mod clip;
 mod disturbed;
+mod embedded;
 mod measures;
 mod mode;
 mod movements;
@@ -18,6 +19,7 @@ pub(crate) use captured::ALL_ZERO;
 pub use captured::{Captured, Showing, recorded, shows};
 pub use clip::{Altered, Clip, animations, unmoved};
 pub use disturbed::{HYBRID_APART, cut_out, hybrids, reversed};
+pub use embedded::{embedded, table};
 pub use measures::{MEASURES, Measure, garwood, measures};
 pub use mode::{Decisions, Mode};
 pub use movements::{MovementSettings, RATE_HZ, drawn, movements, perform, plan, ready_made};

@@ -171,7 +171,7 @@ const MODES: [Mode; 8] = [
     },
     Mode::Spans,
 ];
-const FRAME: Mode = Mode::Frame { n: 2, stride: 4 };
+pub(super) const FRAME: Mode = Mode::Frame { n: 2, stride: 4 };
 /// Those of everything beside it.
 const FEW: [Mode; 3] = [Mode::Paper { n: 1, stride: 1 }, FRAME, Mode::FILTER];
 /// A behaviour counts as affirmed in a recording when it is for so long, seconds.
@@ -191,21 +191,21 @@ const DAMAGES: [Damage; 7] = [
 ];
 
 /// The names of the three sets.
-const SETS: [&str; 3] = [
+pub(super) const SETS: [&str; 3] = [
     "Ares movements",
     "Choreographed animations",
     "Motion capture",
 ];
 
 /// What decides, and for how many behaviours.
-struct Judge<'v> {
+pub(super) struct Judge<'v> {
     mode: Mode,
     recogniser: Option<Box<dyn Recogniser + 'v>>,
     vocabulary: &'v Vocabulary,
 }
 
 impl<'v> Judge<'v> {
-    fn new(mode: Mode, vocabulary: &'v Vocabulary) -> Result<Self> {
+    pub(super) fn new(mode: Mode, vocabulary: &'v Vocabulary) -> Result<Self> {
         Ok(Self {
             recogniser: mode.over(vocabulary)?,
             mode,
@@ -225,7 +225,7 @@ impl<'v> Judge<'v> {
         clips.par_iter().map(one).collect()
     }
 
-    fn row(&self, set: &str, clips: &[&Clip], altered: Altered) -> Result<Row> {
+    pub(super) fn row(&self, set: &str, clips: &[&Clip], altered: Altered) -> Result<Row> {
         Row::of(set, self.mode, altered, &self.tallies(clips, altered)?)
     }
 }

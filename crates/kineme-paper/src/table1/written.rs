@@ -19,13 +19,13 @@ const ASKED_RECALL: f64 = 95.0;
 const ASKED_ALARMS: f64 = 1.0;
 
 /// The paper's table, n = 1 and n = 2.
-const PUBLISHED: [(&str, f64, f64); 3] = [
+pub(super) const PUBLISHED: [(&str, f64, f64); 3] = [
     ("Ares movements", 96.61, 96.61),
     ("Choreographed animations", 99.94, 99.94),
     ("Motion capture", 99.97, 99.98),
 ];
 
-fn percent(estimate: Option<Estimate>) -> String {
+pub(super) fn percent(estimate: Option<Estimate>) -> String {
     match estimate {
         Some(e) => format!("{:.2}", 100.0 * e.value),
         None => "-".into(),
@@ -44,7 +44,7 @@ fn with_interval(estimate: Option<Estimate>) -> String {
     }
 }
 
-fn way(mode: Mode) -> String {
+pub(super) fn way(mode: Mode) -> String {
     match mode.postures() {
         Some((1, _)) => format!("{}, n 1", mode.name()),
         Some((n, stride)) => format!("{}, n {n}, stride {stride}", mode.name()),

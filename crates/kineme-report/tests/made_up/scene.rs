@@ -12,12 +12,15 @@ const NODES: usize = 5;
 
 /// Pelvis, chest, head, and per side shoulder, elbow, hand, hip, knee, foot, toes.
 fn body() -> Body {
+    let mut parents = vec![None, Some(0), Some(1)];
     let mut bones = vec![
         ([0, 1], [0.11, 0.10]),
         ([1, 2], [0.05, 0.05]),
         ([2, 2], [0.1, 0.1]),
     ];
     for side in [3, 10] {
+        let hangs = [1, side, side + 1, 0, side + 3, side + 4, side + 5];
+        parents.extend(hangs.map(Some));
         bones.extend([
             ([1, side], [0.06, 0.055]),
             ([side, side + 1], [0.05, 0.04]),
@@ -32,6 +35,7 @@ fn body() -> Body {
         name: "made up".into(),
         points: 17,
         centre: 0,
+        parents,
         bones: bones
             .into_iter()
             .map(|(ends, radii)| Bone { ends, radii })
