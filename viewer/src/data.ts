@@ -115,6 +115,13 @@ export interface Scene {
   primitives: Card[];
 }
 
+/** The scene that a page holds: JSON, packed. */
+export async function unpacked(text: string): Promise<Scene> {
+  const packed = bytes(text.trim()).buffer as ArrayBuffer;
+  const json = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return (await new Response(json).json()) as Scene;
+}
+
 function bytes(text: string): DataView {
   const raw = atob(text);
   const out = new Uint8Array(raw.length);
@@ -126,8 +133,10 @@ function bytes(text: string): DataView {
 export function places(packed: Places): Float32Array {
   const view = bytes(packed.data);
   const out = new Float32Array(view.byteLength / 2);
+  // A row holds the differences to the one before, which wrap round.
+  const row = new Int16Array(Math.max(3 * packed.points, 1));
   for (let i = 0; i < out.length; i++) {
-    const whole = view.getInt16(2 * i, true);
+    const whole = (row[i % row.length] += view.getInt16(2 * i, true));
     out[i] = whole === -32768 ? NaN : whole * packed.step;
   }
   return out;

@@ -1,6 +1,6 @@
 // The page's program: draws the scene that the page holds.
 import { CardView } from "./card";
-import type { Scene } from "./data";
+import { unpacked, type Scene } from "./data";
 import type { Player } from "./player";
 import { Stage } from "./stage";
 import { slow } from "./world";
@@ -57,10 +57,9 @@ function start(scene: Scene): void {
   requestAnimationFrame(frame);
 }
 
-const text = document.getElementById("scene")?.textContent;
-if (text) {
+async function begin(text: string): Promise<void> {
   try {
-    start(JSON.parse(text) as Scene);
+    start(await unpacked(text));
   } catch (error) {
     const notice = document.createElement("p");
     notice.className = "notice";
@@ -68,3 +67,6 @@ if (text) {
     document.querySelector("header")?.append(notice);
   }
 }
+
+const text = document.getElementById("scene")?.textContent;
+if (text) void begin(text);

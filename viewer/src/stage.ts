@@ -38,8 +38,8 @@ export class Stage {
     this.player = new Player("the motion", () => this.pose());
     this.beside = toggle("Stand side by side", "Side by side", true, (on) => {
       this.apart = on;
-      this.frame();
       this.pose();
+      this.frame();
     });
     const tools = make("div", { class: "tools" },
       this.beside,
@@ -98,9 +98,11 @@ export class Stage {
       playing.shown = box.checked;
       this.pose();
     });
-    const chip = make("i", { class: playing.actor.ghost ? "chip ghost" : "chip" });
-    chip.style.background = playing.actor.colour === null ? neutral() : this.scene.palette[playing.actor.colour % this.scene.palette.length];
-    return make("label", {}, box, chip, playing.actor.name);
+    const { colour, ghost, name } = playing.actor;
+    const chip = make("i", { class: ghost ? "chip ghost" : "chip" });
+    chip.style.background = colour === null ? "var(--none)" : this.scene.palette[colour % this.scene.palette.length];
+    // A colour of its own tells a body from the others, and so does being seen through.
+    return make("label", {}, box, ...(colour !== null || ghost ? [chip] : []), name);
   }
 
   /** The colour of an actor at a moment: its own, or that of what it does, which comes and goes in a tenth of a second. */
@@ -156,8 +158,9 @@ export class Stage {
     const at = new THREE.Vector3();
     this.middle(at);
     if (!Number.isFinite(at.x)) at.set(0, 0, 0.9);
-    const wide = this.playing.map(({ actor }) => (this.apart ? Math.hypot(...actor.aside) : 0));
-    const spread = Math.max(0, ...wide);
+    const centre = new THREE.Vector3();
+    const wide = this.playing.map(({ figure }) => figure.centre(centre).setZ(0).distanceTo(at.clone().setZ(0)));
+    const spread = Math.max(0, ...wide.filter(Number.isFinite));
     this.view.reach = 1.7 + spread;
     at.z = 0.95;
     this.view.look(at, 4.0 + 0.9 * spread);

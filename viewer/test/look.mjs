@@ -25,10 +25,10 @@ for (const [name, width, height] of [["wide", 1280, 800], ["phone", 390, 844]]) 
     const { page, complaints } = await open(browser, pathToFileURL(resolve(file)).href, { viewport: { width, height }, colorScheme, reducedMotion: "reduce" });
     await put(page, 0.42);
     await page.screenshot({ path: `${folder}/${name}-${colorScheme}.png`, timeout: 120000 });
-    const cards = page.locator("#primitives");
+    const cards = page.locator(".cards").first();
     if (await cards.count()) {
       await cards.scrollIntoViewIfNeeded();
-      await page.evaluate(() => document.querySelector("#primitives").scrollIntoView());
+      await page.evaluate(() => document.querySelector(".cards").scrollIntoView());
       await put(page, 0.55);
       await page.screenshot({ path: `${folder}/${name}-${colorScheme}-cards.png`, timeout: 120000 });
     }

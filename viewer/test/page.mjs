@@ -48,7 +48,7 @@ const slide = (page, selector, value) => page.evaluate(([selector, value]) => {
 }, [selector, value]);
 
 const atCards = async (page) => {
-  await page.evaluate(() => document.querySelector("#primitives").scrollIntoView());
+  await page.evaluate(() => document.querySelector(".cards").scrollIntoView());
   await until(page, () => document.querySelector(".card canvas")?.dataset.drawn !== undefined);
 };
 
@@ -80,7 +80,7 @@ await check("keys play, step, jump and change the speed", async (page) => {
   await page.keyboard.press("Home");
   assert.match(await time(page), /^0\.00/);
   await page.keyboard.press("-");
-  assert.equal(await page.locator("#stage .transport select").inputValue(), "0.5");
+  assert.equal(await page.locator("#stage [aria-label=Speed]").inputValue(), "0.5");
   await page.keyboard.press("+");
   assert.equal(await page.locator("#stage .play").getAttribute("aria-label"), "Play");
   await page.keyboard.press(" ");
@@ -103,11 +103,18 @@ await check("a slider changes posture and duration, the flowfield can be seen", 
   assert.notEqual((await picture(page, CARD)).sum, after.sum);
 });
 
+await check("the contents lead to their sections", async (page) => {
+  await page.locator("nav a").last().click();
+  const [place, top] = await page.evaluate(() => [location.hash, document.querySelector("#section-1").getBoundingClientRect().top]);
+  assert.equal(place, "#section-1");
+  assert.ok(top >= 0 && top < 800, `${top}`);
+});
+
 await check("another take can be chosen, a body hidden", async (page) => {
   const before = (await picture(page, STAGE)).sum;
   await redrawn(page, STAGE, () => page.locator(".legend input").last().click());
   assert.notEqual((await picture(page, STAGE)).sum, before);
-  await redrawn(page, STAGE, () => page.locator(".choice").selectOption("1"));
+  await redrawn(page, STAGE, () => page.locator(".choice label").nth(1).click());
   assert.equal(await page.locator(".track").count(), 0);
 });
 

@@ -35,6 +35,7 @@ pub fn test(root: &Path) -> Result<(), String> {
     write_page(root, &page)?;
     let folder = root.join("viewer");
     let page = page.display().to_string();
+    run(&folder, "node", &["test/rows.mjs"])?;
     run(&folder, "node", &["test/page.mjs", &page])
 }
 

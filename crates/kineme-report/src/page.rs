@@ -1,7 +1,12 @@
 //! One page of HTML: movement in three dimensions, figures and tables. Opens from a file, offline.
 
+use std::io::Write as _;
 use std::ops::Range;
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use serde::Serialize;
 
 use crate::palette::{COLOURS, colour};
@@ -87,7 +92,7 @@ impl Page {
         html.push_str("</main>\n");
         if let Some((script, _)) = moving {
             html.push_str(&format!(
-                "<script type=\"application/json\" id=\"scene\">{}</script>\n<script>\n{script}</script>\n",
+                "<script type=\"application/gzip;base64\" id=\"scene\">{}</script>\n<script>\n{script}</script>\n",
                 data(&self.scene)
             ));
         }
@@ -215,21 +220,23 @@ struct Data<'a> {
     scene: &'a Scene,
 }
 
-/// The scene as JSON that may stand in a script element: no text in it can end the element.
+/// The scene as JSON, packed, in letters that may stand in a script element: none can end it.
 fn data(scene: &Scene) -> String {
     let data = Data {
         palette: (0..COLOURS).map(colour).collect(),
         scene,
     };
-    // Plain structs of numbers and text always become JSON.
-    let json = serde_json::to_string(&data).unwrap_or_default();
-    json.replace('<', "\\u003c")
-        .replace('\u{2028}', "\\u2028")
-        .replace('\u{2029}', "\\u2029")
+    // Plain structs of numbers and text always become JSON, and writing to memory does not fail.
+    let json = serde_json::to_vec(&data).unwrap_or_default();
+    let mut packed = GzEncoder::new(Vec::new(), Compression::default());
+    let written = packed.write_all(&json).and_then(|()| packed.finish());
+    STANDARD.encode(written.unwrap_or_default())
 }
 
 #[cfg(test)]
 mod tests {
+    use flate2::read::GzDecoder;
+
     use super::*;
     use crate::scene::{Actor, Body, Bone, Places, Take};
 
@@ -289,7 +296,9 @@ mod tests {
         let html = page.html_with(Some((SCRIPT, "")));
         let (_, rest) = html.split_once("id=\"scene\">").expect("data");
         let (json, _) = rest.split_once("</script>").expect("its end");
-        let read: Scene = serde_json::from_str(json).expect("JSON");
+        let packed = STANDARD.decode(json).expect("base64");
+        let json = std::io::read_to_string(GzDecoder::new(packed.as_slice())).expect("gzip");
+        let read: Scene = serde_json::from_str(&json).expect("JSON");
         assert_eq!(read, page.scene);
         assert!(json.contains("\"palette\":[\"#0072b2\""));
     }

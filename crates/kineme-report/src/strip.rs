@@ -18,7 +18,7 @@ pub fn strip(title: &str, body: &Body, places: &Places, rows: &[usize], colour: 
     let title = escape(title);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"strip\" role=\"img\" aria-label=\"{title}\" width=\"{0}\" \
-         height=\"{HEIGHT}\" viewBox=\"0 0 {0} {HEIGHT}\">\n",
+         height=\"{HEIGHT}\" viewBox=\"0 0 {0} {HEIGHT}\">\n<g stroke=\"{colour}\" stroke-linecap=\"round\">\n",
         tenth(width)
     );
     let scale = HEIGHT / METRES;
@@ -49,16 +49,15 @@ pub fn strip(title: &str, body: &Body, places: &Places, rows: &[usize], colour: 
             let [ax, ay, bx, by] = [a[0], a[1], b[0], b[1]].map(tenth);
             let thick = thick.max(1.5);
             // A rim in the colour of the paper tells near limbs from those behind them.
-            for (stroke, width) in [("var(--paper,#fff)", thick + 1.6), (colour, thick)] {
+            for (stroke, width) in [(" stroke=\"var(--paper,#fff)\"", thick + 1.6), ("", thick)] {
                 let width = tenth(width);
                 svg.push_str(&format!(
-                    "<path d=\"M{ax} {ay}L{bx} {by}\" stroke=\"{stroke}\" stroke-width=\"{width}\" \
-                     stroke-linecap=\"round\"/>\n"
+                    "<path d=\"M{ax} {ay}L{bx} {by}\"{stroke} stroke-width=\"{width}\"/>\n"
                 ));
             }
         }
     }
-    svg.push_str("</svg>\n");
+    svg.push_str("</g>\n</svg>\n");
     svg
 }
 

@@ -166,3 +166,75 @@ pub fn check_machine_paths(tree: &Tree, violations: &mut Vec<String>) {
         }
     }
 }
+
+/// The document that says where each statement of the paper is built and tested.
+const PAPER: &str = "docs/paper.md";
+
+/// Rows `| the paper | module | test |` of the paper's page name code that is there: identifiers of the second cell
+/// occur in sources, words of the third name files of tests, and what is in backticks there is a test's function.
+pub fn check_paper(tree: &Tree, violations: &mut Vec<String>) {
+    let code: Vec<(&str, &str)> = tree.files().filter(|(p, _)| p.ends_with(".rs")).collect();
+    let said = |name: &str| code.iter().any(|(_, text)| is_word(text, name));
+    let is_function = |name: &str| {
+        let head = format!("fn {name}(");
+        code.iter().any(|(_, text)| text.contains(&head))
+    };
+    let is_test_file = |name: &str| {
+        let [file, folder] = [format!("/tests/{name}.rs"), format!("/tests/{name}/")];
+        let holds = |(path, _): &(&str, &str)| path.ends_with(&file) || path.contains(&folder);
+        name == "unit" || code.iter().any(holds)
+    };
+    let mut inside = false;
+    for (number, line) in prose(tree.text(PAPER)) {
+        let is_head = line == "| the paper | module | test |";
+        inside = is_head || (inside && line.starts_with('|'));
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let &["", _, module, test, ""] = cells.as_slice() else {
+            continue;
+        };
+        if !inside || is_head || test.starts_with("---") {
+            continue;
+        }
+        let mut missing = Vec::new();
+        for span in backticked(module).filter(|span| is_identifier(span)) {
+            missing.extend(span.split("::").filter(|part| !said(part)));
+        }
+        // Which crate a file of tests belongs to stands in brackets.
+        let bare: String = test
+            .split('(')
+            .enumerate()
+            .map(|(i, part)| {
+                if i == 0 {
+                    part
+                } else {
+                    part.split_once(')').map_or("", |p| p.1)
+                }
+            })
+            .collect();
+        missing.extend(backticked(&bare).filter(|name| !is_function(name)));
+        let words = bare.split('`').step_by(2).flat_map(str::split_whitespace);
+        let words = words.map(|word| word.trim_matches([',', ';', ':', '*']));
+        missing.extend(words.filter(|word| !word.is_empty() && !is_test_file(word)));
+        for name in missing {
+            violations.push(format!("{PAPER}:{number}: no code is called `{name}`"));
+        }
+    }
+}
+
+/// A path of Rust such as `Flowfield::of`.
+fn is_identifier(span: &str) -> bool {
+    let part = |part: &str| {
+        part.starts_with(|c: char| c.is_ascii_alphabetic())
+            && part.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+    };
+    span.split("::").all(part)
+}
+
+/// Whether a text holds a name, not as a part of another.
+fn is_word(text: &str, name: &str) -> bool {
+    let outside = |c: char| !(c.is_alphanumeric() || c == '_');
+    text.match_indices(name).any(|(at, _)| {
+        text[..at].chars().next_back().is_none_or(outside)
+            && text[at + name.len()..].chars().next().is_none_or(outside)
+    })
+}

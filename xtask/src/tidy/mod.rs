@@ -122,6 +122,7 @@ fn inspect(tree: &Tree) -> Findings {
     check_lengths(tree, &mut findings.violations);
     documents::check_paths(tree, &floors, &mut findings);
     documents::check_code_map(tree, &floors, &mut findings);
+    documents::check_paper(tree, &mut findings.violations);
     documents::check_changelog(tree, &mut findings.violations);
     documents::check_machine_paths(tree, &mut findings.violations);
     findings

@@ -270,3 +270,34 @@ fn the_scanner_reads_paths_and_skips_text() {
     assert_eq!(found, expected);
     assert_eq!(paths(source)[0].line, 4);
 }
+
+#[test]
+fn the_papers_page_names_code_and_tests_that_are_there() {
+    let page = |row: &str| {
+        format!(
+            "| the paper | module | test |\n| --- | --- | --- |\n{row}\n\n| figure | x | `y` |\n"
+        )
+    };
+    let file = "docs/paper.md";
+    let mut tree = good();
+    let test = "#[test]\nfn a_law() {}\n".to_owned();
+    tree.0.insert("crates/report/tests/laws.rs".into(), test);
+    let source = "pub struct Flow;\nimpl Flow { fn of() {} }\n".to_owned();
+    tree.0.insert("crates/report/src/lib.rs".into(), source);
+    for (row, missing) in [
+        (
+            "| \"a\" | `Flow::of`, kept | laws (`report`): `a_law` |",
+            None,
+        ),
+        ("| \"a\" | `Flow::to` | laws |", Some("to")),
+        ("| \"a\" | `Flow` | lows |", Some("lows")),
+        ("| \"a\" | `Flow` | laws: `a_lore` |", Some("a_lore")),
+    ] {
+        tree.0.insert(file.into(), page(row));
+        let expected: Vec<String> = missing
+            .map(|name| format!("{file}:3: no code is called `{name}`"))
+            .into_iter()
+            .collect();
+        assert_eq!(inspect(&tree).violations, expected, "{row}");
+    }
+}

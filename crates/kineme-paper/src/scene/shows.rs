@@ -85,6 +85,9 @@ fn bout(scene: &mut Scene, show: &Show) -> Take {
     let seen = show.attacker.seen.motion();
     let mut take = take_of_performance(scene, &show.boxing, &show.bout, Some((seen, &show.heard)));
     take.name = "Sparring".into();
+    if let Some(watched) = take.actors.last_mut() {
+        watched.name = "Attacker".into();
+    }
     take.note =
         "Adonis watches the attacker's joints, recognises the attack and answers with a shield."
             .into();
