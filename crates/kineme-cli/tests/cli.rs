@@ -262,7 +262,6 @@ fn what_exists_is_overwritten_with_force_alone() {
         "convert arms.bvh out.bvh",
         "convert . many --body adonis",
         "derive arms.bvh -o v.kineme --report report",
-        "demo -o demo",
     ];
     for line in lines {
         let arguments: Vec<&str> = line.split_whitespace().collect();
@@ -274,6 +273,16 @@ fn what_exists_is_overwritten_with_force_alone() {
         let forced = [&arguments[..], &["--force"]].concat();
         assert_eq!(kineme(folder.path(), &forced).code, 0, "{line}");
     }
+    // What takes long is refused before it begins: one of its files in the way is enough.
+    fs::create_dir(folder.path().join("demo")).expect("a folder");
+    fs::write(folder.path().join("demo/index.html"), "kept").expect("a file");
+    let run = kineme(folder.path(), &["demo", "-o", "demo"]);
+    assert_eq!(run.code, 2, "{}", run.err);
+    assert!(run.err.contains("hint: --force"), "{}", run.err);
+    let run = kineme(folder.path(), &["demo", "-o", "demo", "--force"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let page = fs::read_to_string(folder.path().join("demo/index.html")).expect("a page");
+    assert!(run.out.contains("index.html") && page.len() > 10_000);
     // The report alone is in the way, too.
     let run = kineme(
         folder.path(),

@@ -78,15 +78,15 @@ pub struct Demo {
 pub struct DemoSettings {
     /// Seed of everything that is drawn.
     pub seed: u64,
-    /// Plans of the first set of Table I, and movements of each.
-    pub table: [usize; 2],
+    /// Plans of the first set of Table I, movements of each, and one in how many animations is judged.
+    pub table: [usize; 3],
 }
 
 impl Default for DemoSettings {
     fn default() -> Self {
         Self {
             seed: 0,
-            table: [4, 10],
+            table: [4, 10, 6],
         }
     }
 }
@@ -147,13 +147,13 @@ pub fn run(settings: &DemoSettings, watch: &mut dyn FnMut(Step)) -> Result<Demo>
     let found = find(seed, &mut |stage| watch(Step::Deriving(stage)))?;
     let show = show(seed, &mut |act| watch(Step::Showing(act)))?;
     watch(Step::Judging);
-    let [clips, movements] = settings.table;
+    let [clips, movements, every] = settings.table;
     let sets = MovementSettings {
         clips,
         movements,
         seed,
     };
-    let table = embedded(&show.boxing, &sets)?;
+    let table = embedded(&show.boxing, &sets, every)?;
     watch(Step::Drawing);
     Ok(Demo {
         figures: draw(&found, &mut |_| {})?,

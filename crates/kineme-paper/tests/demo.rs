@@ -9,7 +9,7 @@ use kineme_paper::figures::PAGE;
 /// A table of few movements: how well they are recognised is the table's own test.
 const SETTINGS: DemoSettings = DemoSettings {
     seed: 0,
-    table: [1, 2],
+    table: [1, 2, 40],
 };
 
 static MADE: LazyLock<(Demo, Vec<Step>)> = LazyLock::new(|| {

@@ -18,23 +18,21 @@ const MODES: [Mode; 4] = [
     Mode::FILTER,
 ];
 
-/// One in so many animations is judged.
-const EVERY: usize = 3;
-
-/// The rows of the first two sets, what Ares did and the animations, for one vocabulary of behaviours.
+/// The rows of the first two sets, what Ares did and one in `every` animations, for one vocabulary of behaviours.
 ///
 /// # Errors
 /// When a simulation fails.
-pub fn embedded(vocabulary: &Vocabulary, settings: &MovementSettings) -> Result<Vec<Row>> {
+pub fn embedded(
+    vocabulary: &Vocabulary,
+    settings: &MovementSettings,
+    every: usize,
+) -> Result<Vec<Row>> {
     let body = vocabulary.body();
     let own = movements(vocabulary, settings, &|| ready_made(body))?;
     let mut animated = animations(body)?;
     let mut number = 0..;
-    animated.retain(|_| {
-        number
-            .next()
-            .is_some_and(|n: usize| n.is_multiple_of(EVERY))
-    });
+    let kept = |n: usize| n.is_multiple_of(every.max(1));
+    animated.retain(|_| number.next().is_some_and(kept));
     let sets: [(&[Clip], Altered); 2] = [(&own, Altered::Nothing), (&animated, Altered::Hands)];
     let mut rows = Vec::new();
     for (set, (clips, altered)) in SETS.iter().zip(sets) {
@@ -101,5 +99,5 @@ const CAPTION: &str = "Five classifiers, one of each boxing behaviour, decide of
      behaviour; accuracy is the mean over the five. Of every frame at least four of them should say no, so always denying \
      comes out high: recall and precision tell more. A false alarm is a stretch of frames in which a behaviour is affirmed \
      that nobody shows, nor within a quarter of a second. `paper` is section V-A as published, with n postures; `frame` is \
-     the exact density, `filter` the stream. Both sets are small here (few plans, one animation in three); `kineme reproduce \
+     the exact density, `filter` the stream. Both sets are small here (few plans, few of the animations); `kineme reproduce \
      table1` makes the whole table, with motion capture and intervals.";
