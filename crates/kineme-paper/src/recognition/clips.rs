@@ -11,11 +11,12 @@ use super::summary::{Line, shown};
 use crate::sets::Result;
 
 /// Methods that see the whole body, then those that see the hands.
-pub const METHODS: [Method; 8] = [
+pub const METHODS: [Method; 9] = [
     Method::Filter,
     Method::Frame,
     Method::Paper,
     Method::Dtw,
+    Method::DtwRoute,
     Method::Posture,
     Method::Constant,
     Method::Encode,
