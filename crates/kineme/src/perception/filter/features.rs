@@ -16,6 +16,8 @@ use crate::skeleton::{Role, Root, Skeleton};
 
 /// Seconds over which displacements are taken.
 pub(super) const WINDOW_SECS: f64 = 0.2;
+/// Seconds at the beginning whose mean posture is the offset.
+const OFFSET_SECS: f64 = 5.0 / 30.0;
 /// Numbers that tell the root's travel: forward and leftward displacement, turn.
 const TRAVEL: usize = 3;
 
@@ -191,14 +193,15 @@ impl Layout {
                 root: None,
             }
         };
-        let at = |k: usize| k as f64 * row.step_secs - row.still_secs;
-        let still = (row.still_secs / row.step_secs).round() as usize;
-        let moving = still..row.phases.len() - still;
-        let offset =
-            offset.then(|| mean_posture(&moving.map(|k| moment(at(k))).collect::<Vec<_>>()));
+        let offset = offset.then(|| {
+            let first: Vec<Moment> = (0..4)
+                .map(|k| moment(OFFSET_SECS * f64::from(k) / 3.0))
+                .collect();
+            mean_posture(first.iter())
+        });
         let mut values = Vec::with_capacity(row.phases.len() * self.dims());
         for k in 0..row.phases.len() {
-            let secs = at(k);
+            let secs = k as f64 * row.step_secs - row.still_secs;
             let before = secs - WINDOW_SECS;
             let (now, then) = (moment(secs), moment(before));
             let mut feature = self.feature(&now, &then, offset.as_deref());
@@ -231,13 +234,18 @@ fn travel(now: &Root, then: &Root) -> [f64; TRAVEL] {
     [v.x, v.y, now.yaw - then.yaw]
 }
 
-/// The mean posture of a whole movement, which is its offset: how somebody stands, and where.
-pub(super) fn mean_posture(moments: &[Moment]) -> Vec<f64> {
-    let mut mean = vec![0.0; moments.first().map_or(0, |m| m.posture.len())];
+fn mean_posture<'a>(moments: impl Iterator<Item = &'a Moment>) -> Vec<f64> {
+    let mut mean: Vec<f64> = Vec::new();
+    let mut count = 0.0;
     for m in moments {
+        mean.resize(m.posture.len(), 0.0);
         for (sum, v) in mean.iter_mut().zip(&m.posture) {
-            *sum += v / moments.len() as f64;
+            *sum += v;
         }
+        count += 1.0;
+    }
+    for sum in &mut mean {
+        *sum /= count;
     }
     mean
 }
@@ -297,4 +305,10 @@ impl Recent {
             },
         })
     }
+}
+
+/// The mean posture of the first moments of a clip.
+pub(super) fn offset(moments: &[Moment]) -> Vec<f64> {
+    let until = moments.first().map_or(0.0, |m| m.secs) + OFFSET_SECS;
+    mean_posture(moments.iter().take_while(|m| m.secs <= until))
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::emission::{Emission, Part};
-use super::features::{Feature, Layout, Moment, Recent, mean_posture};
+use super::features::{Feature, Layout, Moment, Recent, offset};
 use super::noise::covariance;
 use super::recogniser::FilterSettings;
 use super::rows::{Row, rows};
@@ -15,11 +15,6 @@ use crate::primitive::Vocabulary;
 /// A joint this far beyond where any exemplar had it cannot be believed, radians.
 const TOLERANCE_RAD: f64 = 0.5;
 
-/// Exemplars differ by so much in every direction, metres: else what a few share by chance would decide everything. Of
-/// whole clips only the order matters, and a coarser eye orders them better; of a stream each moment counts.
-const FLOOR_STREAM_M: f64 = 0.03;
-const FLOOR_CLIP_M: f64 = 0.05;
-
 /// Rows and what is needed to compare moments with them.
 #[derive(Debug, Clone)]
 pub(super) struct Model {
@@ -27,7 +22,7 @@ pub(super) struct Model {
     pub rows: Vec<Row>,
     /// Where the rows have the joints.
     pub bounds: Bounds,
-    /// Half of a movement's mean posture is taken off: people differ in how they stand.
+    /// Half of the first moments' posture is taken off: people differ in how they stand.
     offset: bool,
     /// Features of all rows' moments, one after the other.
     features: Vec<f64>,
@@ -53,8 +48,7 @@ impl Model {
             features.extend(own);
             bounds.join(&range);
         }
-        let floor = if offset { FLOOR_CLIP_M } else { FLOOR_STREAM_M };
-        let covariance = covariance(vocabulary, &rows, &features, &layout.still(), floor);
+        let covariance = covariance(vocabulary, &rows, &features, &layout.still());
         let [hands, body] = layout.parts();
         let trusts = [settings.hands_trust, settings.body_trust];
         let parts: Vec<Part> = [hands, body]
@@ -88,7 +82,7 @@ impl Model {
 
     /// Features of a clip's moments, each with the seconds since the one before.
     pub fn of_clip(&self, moments: Vec<Moment>) -> Vec<(Feature, f64)> {
-        let offset = self.offset.then(|| mean_posture(&moments));
+        let offset = self.offset.then(|| offset(&moments));
         let mut recent = Recent::default();
         let usual = match moments.as_slice() {
             [first, .., last] => (last.secs - first.secs) / (moments.len() - 1) as f64,

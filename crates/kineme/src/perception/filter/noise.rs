@@ -9,6 +9,8 @@ use crate::primitive::{ParameterSource, Vocabulary};
 /// good for; of postures more, as people stand differently, which displacements forget.
 const PRIOR_DISPLACEMENT_M: f64 = 0.04;
 const PRIOR_POSTURE_M: f64 = 0.06;
+/// Never less than so much, metres: else what a few exemplars share by chance would decide everything.
+const FLOOR_M: f64 = 0.03;
 /// As many residuals of that size are taken for granted.
 const PRIOR_COUNT: f64 = 200.0;
 /// The share of the covariance that is replaced by its diagonal: features are more than exemplars determine.
@@ -18,8 +20,7 @@ const NEAR: f64 = 0.15;
 /// At most so many pairs of rows a primitive.
 const MOST_PAIRS: usize = 200;
 
-/// The covariance of features about their row; `still` tells which of their numbers are of postures, and nothing varies
-/// by less than the floor.
+/// The covariance of features about their row; `still` tells which of their numbers are of postures.
 ///
 /// Residuals are differences of two rows of one primitive at the same phase.
 pub(super) fn covariance(
@@ -27,7 +28,6 @@ pub(super) fn covariance(
     rows: &[Row],
     features: &[f64],
     still: &[bool],
-    floor_m: f64,
 ) -> DMatrix<f64> {
     let prior = still.iter().map(|posture| match posture {
         true => PRIOR_COUNT * PRIOR_POSTURE_M * PRIOR_POSTURE_M,
@@ -57,7 +57,7 @@ pub(super) fn covariance(
     let diagonal = DMatrix::from_diagonal(&covariance.diagonal());
     covariance * (1.0 - SHRINK)
         + diagonal * SHRINK
-        + DMatrix::identity(dims, dims) * (floor_m * floor_m)
+        + DMatrix::identity(dims, dims) * (FLOOR_M * FLOOR_M)
 }
 
 /// What is left between rows of a primitive, pair by pair; `residual` gives it with its size.
