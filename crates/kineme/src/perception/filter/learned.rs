@@ -19,8 +19,7 @@ pub(super) const SCORES: usize = 5;
 const MOST_FOLDS: usize = 160;
 const MOST_COMPARED: f64 = 1.5e8;
 const LEAST_FOLDS: usize = 24;
-/// How much a squared distance of routes may count a second: half of what a direction of a posture does at the least,
-/// if it counts at all.
+/// How much a squared distance of routes may count a second; at most as much as one of the body's directions.
 const ROUTE_TRUSTS: [f64; 4] = [0.0, 0.3, 1.0, 3.0];
 /// The temperature of real vocabularies, and what it costs, in logarithms of probability, to be fitted e times off: where
 /// one person gave all exemplars, nothing that is left out is hard, and nothing is learned of others.
