@@ -274,9 +274,13 @@ pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned
         let keeping = quantile(&room, 1.0 - CALLED).unwrap_or(learned.bias);
         learned.bias = learned.bias.min(keeping - MARGIN);
     }
+    // Streams know no route.
+    let by_postures = self::trials(filter, &folds, &evidences, 0.0);
     let gains = |unknown: bool| -> Vec<f64> {
-        let of = told.iter().filter(|t| t.1 == unknown);
-        of.map(|t| t.0[0]).collect()
+        let of = by_postures.iter().filter(possible);
+        of.filter(|t| t.truth.is_none() == unknown)
+            .map(|t| scores(&t.classes, &evidences[t.fold], &learned.limits)[0])
+            .collect()
     };
     let (known, unknown) = (gains(false), gains(true));
     learned.unknown_per_sec = match (quantile(&known, 1.0 - KEPT), median(&unknown)) {
