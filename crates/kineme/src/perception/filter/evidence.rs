@@ -92,7 +92,12 @@ pub(super) fn evidence<'a>(
                 .fold(f64::NEG_INFINITY, f64::max);
             let mut total = 0.0;
             for ((m, x), e) in own.iter_mut().zip(next.iter()).zip(&fit.states[first..]) {
-                *m = x * (dt * e - best).exp();
+                // Out of reach, a state may fit beyond all bounds.
+                *m = if *x > 0.0 {
+                    x * (dt * e - best).exp()
+                } else {
+                    0.0
+                };
                 total += *m;
             }
             for m in own.iter_mut() {
