@@ -166,3 +166,35 @@ fn duration_runs_from_the_first_frame_to_the_last() {
     }
     assert!(ramp(2, 1e-9).resampled(1000.0).is_err(), "too many frames");
 }
+
+#[test]
+fn travel_is_told_as_the_body_faced_on_its_way() {
+    // Round a circle of 2 m to the left, wherever it lies; and straight to the right, facing forward.
+    let step = |k: usize| 0.01 * k as f64;
+    let led = |root: &dyn Fn(f64) -> Root| {
+        let roots = (0..=100).map(|k| root(step(k))).collect();
+        let motion = Motion::new("led", body(), 30.0, vec![0.0; 101 * 20], roots);
+        motion.expect("a motion").travelled()
+    };
+    for (from, x) in [(0.0, 0.0), (2.5, 7.0), (-9.0, -1.0)] {
+        let round = led(&|angle| Root {
+            position: Vector3::new(
+                x + 2.0 * (from + angle).sin(),
+                -2.0 * (from + angle).cos(),
+                1.0,
+            ),
+            yaw: from + angle,
+        });
+        assert_eq!(round[0], [0.0; 3]);
+        for (k, [forward, left, turn]) in round.into_iter().enumerate() {
+            let angle = step(k);
+            assert!((forward - 2.0 * angle).abs() < 1e-4, "{k}: {forward}");
+            assert!(left.abs() < 1e-9 && (turn - angle).abs() < 1e-9, "{k}");
+        }
+    }
+    let aside = led(&|d| Root {
+        position: Vector3::new(0.0, -d, 1.0),
+        yaw: 0.0,
+    });
+    assert!((aside[100][1] + 1.0).abs() < 1e-9 && aside[100][0] == 0.0);
+}

@@ -11,11 +11,12 @@ use super::summary::{Line, shown};
 use crate::sets::Result;
 
 /// Methods that see the whole body, then those that see the hands.
-pub const METHODS: [Method; 8] = [
+pub const METHODS: [Method; 9] = [
     Method::Filter,
     Method::Frame,
     Method::Paper,
     Method::Dtw,
+    Method::DtwRoute,
     Method::Posture,
     Method::Constant,
     Method::Encode,
@@ -105,6 +106,20 @@ pub fn lines(corpus: &Corpus, asked: &Asked) -> Result<[Line; 2]> {
             hands,
         )?,
     ])
+}
+
+/// The row of a set whose classes differ in where they lead: beside the baseline that is told, too.
+///
+/// # Errors
+/// When a method was not asked.
+pub fn line_beside_route(corpus: &Corpus, asked: &Asked) -> Result<Line> {
+    let [aim, _] = aims(corpus.name);
+    let row = format!("{}, beside 1NN-DTW with the route", corpus.name);
+    let (ours, baseline) = (
+        asked.rights(Method::Filter)?,
+        asked.rights(Method::DtwRoute)?,
+    );
+    Line::of(&row, &ours, &baseline, 1, aim)
 }
 
 /// Writes the table of a set: a row a method.

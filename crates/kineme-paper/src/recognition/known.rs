@@ -25,7 +25,9 @@ pub enum Method {
     Encode,
     /// The nearest exemplar by time warping, all landmarks.
     Dtw,
-    /// The same by the hands alone.
+    /// The same with the root's travel since the beginning.
+    DtwRoute,
+    /// The same as [`Self::Dtw`] by the hands alone.
     DtwHands,
     /// The nearest posture.
     Posture,
@@ -42,6 +44,7 @@ impl Method {
             Method::Paper => "paper",
             Method::Encode => "encode",
             Method::Dtw => "1NN-DTW",
+            Method::DtwRoute => "1NN-DTW, route",
             Method::DtwHands => "1NN-DTW, hands",
             Method::Posture => "nearest posture",
             Method::Constant => "constant",
@@ -60,6 +63,13 @@ impl Method {
             Method::Paper => Box::new(Paper::new(vocabulary, &PaperSettings::default())?),
             Method::Encode => Box::new(Encoder::new(vocabulary, &EncodingSettings::default())?),
             Method::Dtw => Box::new(NearestDtw::new(vocabulary, &NearestDtwSettings::default())?),
+            Method::DtwRoute => {
+                let settings = NearestDtwSettings {
+                    route: true,
+                    ..NearestDtwSettings::default()
+                };
+                Box::new(NearestDtw::new(vocabulary, &settings)?)
+            }
             Method::DtwHands => {
                 let settings = NearestDtwSettings {
                     features: hands(),

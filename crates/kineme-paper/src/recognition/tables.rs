@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::clips::{Asked, METHODS, lines, write_clips};
+use super::clips::{Asked, METHODS, line_beside_route, lines, write_clips};
 use super::corpora::{BANDAI_NAMCO, HDM05, MSR, Part, UTD, corpora};
 use super::damage::{costs, write_costs};
 use super::exercises::Exercises;
@@ -56,6 +56,9 @@ pub fn perception_tables(
         let asked = Asked::of(of, &METHODS)?;
         let [all, by_hands] = lines(of, &asked)?;
         whole.push(all);
+        if of.name == BANDAI_NAMCO {
+            whole.push(line_beside_route(of, &asked)?);
+        }
         hands.push(by_hands);
         calibration.push((of.name, asked.calibration_error(Method::Filter)?));
         tell(&mut details, watch, |t| write_clips(t, of, &asked))?;

@@ -8,6 +8,7 @@ mod recording;
 mod resample;
 mod source;
 mod track;
+mod travel;
 
 pub use activity::{CENTROID_DIMS, STACKED_DIMS};
 pub use body_motion::Motion;

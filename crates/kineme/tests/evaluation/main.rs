@@ -2,4 +2,5 @@
 
 mod baselines;
 mod clips;
+mod routes;
 mod streams;

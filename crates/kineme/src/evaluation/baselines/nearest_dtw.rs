@@ -6,12 +6,15 @@ use super::windows::{Recent, windows};
 use super::{Which, exemplars, least_of_each, positive, softmax, some_primitives, whole};
 use crate::alignment::{Band, Sequences, distances_to_query, resample};
 use crate::error::{Error, Result};
+use crate::motion::Motion;
 use crate::primitive::{
     Listener, Observation, Observations, Posterior, Reading, Recogniser, Recognition, Vocabulary,
 };
 
 /// How many windows are compared with all others to find their usual distance.
 const COMPARED: usize = 100;
+/// Numbers of a route in a frame.
+const ROUTE_DIMS: usize = 3;
 
 /// How [`NearestDtw`] compares.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +24,9 @@ pub struct NearestDtwSettings {
     /// The share of a movement's mean posture that is disregarded, 0 to 1: with more of it shapes are compared in place of
     /// postures, which helps between people who stand differently. Customarily 0.
     pub shape: f64,
+    /// Whether frames of whole movements also tell how far the movement has led ([`Motion::travelled`]), a radian like a
+    /// metre. Customarily not.
+    pub route: bool,
     /// Frames to which whole movements are resampled, at least 2.
     pub samples: usize,
     /// The band of Sakoe and Chiba (1978), a share of the frames; 0.1 is customary.
@@ -43,6 +49,7 @@ impl Default for NearestDtwSettings {
         Self {
             features: Features::Landmarks,
             shape: 0.0,
+            route: false,
             samples: 64,
             band: 0.1,
             temperature: 0.15,
@@ -125,8 +132,7 @@ impl<'a> NearestDtw<'a> {
         for which in &all {
             let motion = motion(which);
             let features = extractor.of_poses(motion.poses().to_vec())?;
-            let clip = resample(&features, dims, &places(settings.samples));
-            clips.extend(shaped(clip, dims, settings.shape));
+            clips.extend(clip(&features, motion, settings));
             let recent = Recent::new(settings.window_secs, settings.window_samples);
             let cut = windows(&features, dims, motion.rate_hz(), recent, stride);
             window_of.extend(std::iter::repeat_n(*which, cut.len()));
@@ -134,17 +140,18 @@ impl<'a> NearestDtw<'a> {
             window_values.extend(cut.into_iter().flat_map(shape));
         }
         let everyone: Vec<usize> = (0..all.len()).collect();
-        let known = |of: Vec<Which>, values: &[f64], frames: usize, queries: &[usize]| {
-            let fallback = extractor.decimetre() * (frames as f64).sqrt();
-            Known::new(of, values, (frames, dims), settings.band, queries, fallback)
+        let known = |of: Vec<Which>, values: &[f64], shape: (usize, usize), queries: &[usize]| {
+            let fallback = extractor.decimetre() * (shape.0 as f64).sqrt();
+            Known::new(of, values, shape, settings.band, queries, fallback)
         };
+        let clip_dims = dims + if settings.route { ROUTE_DIMS } else { 0 };
         let compared = spread(window_of.len(), COMPARED);
         Ok(Self {
-            clips: known(all, &clips, settings.samples, &everyone)?,
+            clips: known(all, &clips, (settings.samples, clip_dims), &everyone)?,
             windows: known(
                 window_of,
                 &window_values,
-                settings.window_samples,
+                (settings.window_samples, dims),
                 &compared,
             )?,
             vocabulary,
@@ -212,9 +219,7 @@ impl Recogniser for NearestDtw<'_> {
 
     fn recognise(&self, seen: &Observations) -> Result<Recognition> {
         let features = self.extractor.of_seen(seen)?;
-        let dims = self.extractor.dims();
-        let query = resample(&features, dims, &places(self.settings.samples));
-        let query = shaped(query, dims, self.settings.shape);
+        let query = clip(&features, seen.motion(), &self.settings);
         let primitives = self.vocabulary.primitives();
         let found = self
             .clips
@@ -264,6 +269,20 @@ impl Listener for Ear<'_> {
         self.answered = Some((seen.secs, reading.clone()));
         Ok(reading)
     }
+}
+
+/// A whole movement as it is compared.
+fn clip(features: &[f64], motion: &Motion, settings: &NearestDtwSettings) -> Vec<f64> {
+    let dims = features.len() / motion.frames();
+    let places = places(settings.samples);
+    let frames = shaped(resample(features, dims, &places), dims, settings.shape);
+    if !settings.route {
+        return frames;
+    }
+    let travelled: Vec<f64> = motion.travelled().into_iter().flatten().collect();
+    let route = resample(&travelled, ROUTE_DIMS, &places);
+    let pairs = frames.chunks(dims).zip(route.chunks(ROUTE_DIMS));
+    pairs.flat_map(|(f, r)| [f, r].concat()).collect()
 }
 
 /// Evenly spaced places from 0 to 1.

@@ -15,8 +15,10 @@ const AGAIN: f64 = 0.1;
 /// What a clip says.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Evidence {
-    /// Log-likelihood of each row.
+    /// Log-likelihood of each row by its postures.
     pub rows: Vec<f64>,
+    /// Squared distance of each row's route, in deviations; `None` where routes tell nothing.
+    pub routes: Option<Vec<f64>>,
     /// Log-likelihood of movement of no known kind.
     pub broad: f64,
     /// Seconds of the clip.
@@ -27,6 +29,15 @@ impl Evidence {
     /// Seconds that evidence is divided by, however short the clip.
     pub fn lasts(&self) -> f64 {
         self.secs.max(0.1)
+    }
+
+    /// Log-likelihood of each row by its postures and by its route, which is trusted so much a second.
+    pub fn weighed(&self, route_trust: f64) -> Vec<f64> {
+        let mut rows = self.rows.clone();
+        for (log, distance) in rows.iter_mut().zip(self.routes.iter().flatten()) {
+            *log -= 0.5 * route_trust * self.lasts() * distance;
+        }
+        rows
     }
 }
 
@@ -81,7 +92,12 @@ pub(super) fn evidence<'a>(
                 .fold(f64::NEG_INFINITY, f64::max);
             let mut total = 0.0;
             for ((m, x), e) in own.iter_mut().zip(next.iter()).zip(&fit.states[first..]) {
-                *m = x * (dt * e - best).exp();
+                // Out of reach, a state may fit beyond all bounds.
+                *m = if *x > 0.0 {
+                    x * (dt * e - best).exp()
+                } else {
+                    0.0
+                };
                 total += *m;
             }
             for m in own.iter_mut() {
@@ -106,6 +122,7 @@ pub(super) fn evidence<'a>(
     }
     Evidence {
         rows: logs,
+        routes: None,
         broad,
         secs,
     }

@@ -12,13 +12,21 @@ use crate::primitive::{Calibration, Observations, ParameterSource, Vocabulary};
 /// The name under which a vocabulary keeps it.
 pub(super) const NAME: &str = "filter";
 /// The first number kept: what the others mean has changed since they were first kept.
-const EDITION: f64 = 2.0;
+const EDITION: f64 = 3.0;
 /// Scores by which the unknown is told.
 pub(super) const SCORES: usize = 5;
 /// At most so many exemplars are left out, and at most so many moments of rows are compared for it.
 const MOST_FOLDS: usize = 160;
 const MOST_COMPARED: f64 = 1.5e8;
 const LEAST_FOLDS: usize = 24;
+/// How much a squared distance of routes may count a second; at most as much as one of the body's directions.
+const ROUTE_TRUSTS: [f64; 4] = [0.0, 0.3, 1.0, 3.0];
+/// The temperature of real vocabularies, and what it costs, in logarithms of probability, to be fitted e times off: where
+/// one person gave all exemplars, nothing that is left out is hard, and nothing is learned of others.
+const USUAL_TEMPERATURE: f64 = 1.0;
+const TEMPERATURE_PRIOR: f64 = 10.0;
+/// What a clip costs a second at the least, however exactly it was met.
+const LEAST_COST: f64 = 5.0;
 /// Weight of the logistic regression's penalty.
 const RIDGE: f64 = 1.0;
 /// What this share of clips costs at most is usual.
@@ -26,14 +34,16 @@ const KEPT: f64 = 0.95;
 /// This share of the exemplars that are left out is to be called by its name, with so much to spare in logarithms of
 /// odds.
 const CALLED: f64 = 0.98;
-const MARGIN: f64 = 1.0;
+const MARGIN: f64 = 2.0;
 
 /// Plain numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Learned {
-    /// Log-likelihoods a second of clips are divided by it: how somebody differs lasts through a clip, so that a longer
-    /// one tells hardly more.
+    /// Log-likelihoods a second of clips are divided by it and by the root of what they cost at the least
+    /// ([`Self::heat`]): how somebody differs lasts through a clip, so that a longer one tells hardly more.
     pub temperature: f64,
+    /// How much a squared distance of routes counts a second: where people went their own ways, hardly at all.
+    pub route_trust: f64,
     /// Mean and deviation of each score, and its weight in the logarithm of the odds of being unknown.
     pub scores: [[f64; 3]; SCORES],
     /// The constant of those odds.
@@ -48,7 +58,8 @@ impl Learned {
     /// What holds as long as nothing was learned: means of real vocabularies.
     pub fn usual(primitives: usize) -> Self {
         Self {
-            temperature: 12.0,
+            temperature: USUAL_TEMPERATURE,
+            route_trust: 1.0,
             scores: [[0.0, 1.0, 0.0]; SCORES],
             bias: -2.0,
             unknown_per_sec: 0.0,
@@ -58,7 +69,13 @@ impl Learned {
 
     /// As a vocabulary keeps it.
     pub fn calibration(&self) -> Calibration {
-        let mut shared = vec![EDITION, self.temperature, self.bias, self.unknown_per_sec];
+        let mut shared = vec![
+            EDITION,
+            self.temperature,
+            self.route_trust,
+            self.bias,
+            self.unknown_per_sec,
+        ];
         shared.extend(self.scores.iter().flatten());
         Calibration {
             recogniser: NAME.into(),
@@ -69,8 +86,14 @@ impl Learned {
 
     /// From what a vocabulary keeps; `None` where that is no such thing.
     pub fn of(calibration: &Calibration) -> Option<Self> {
-        let [EDITION, temperature, bias, unknown_per_sec, scores @ ..] =
-            calibration.shared.as_slice()
+        let [
+            EDITION,
+            temperature,
+            route_trust,
+            bias,
+            unknown_per_sec,
+            scores @ ..,
+        ] = calibration.shared.as_slice()
         else {
             return None;
         };
@@ -79,6 +102,7 @@ impl Learned {
         let positive = *temperature > 0.0 && scores.iter().all(|[_, d, _]| *d > 0.0);
         Some(Self {
             temperature: Some(*temperature).filter(|_| positive)?,
+            route_trust: Some(*route_trust).filter(|t| *t >= 0.0)?,
             scores,
             bias: *bias,
             unknown_per_sec: *unknown_per_sec,
@@ -88,6 +112,11 @@ impl Learned {
                 .map(limit)
                 .collect::<Option<_>>()?,
         })
+    }
+
+    /// What log-likelihoods of a clip are divided by before they become probabilities.
+    pub fn heat(&self, classes: &[f64], evidence: &Evidence) -> f64 {
+        self.temperature * unit(classes, evidence.lasts())
     }
 
     /// The logarithm of the odds that a clip is none of the primitives.
@@ -100,11 +129,12 @@ impl Learned {
     }
 }
 
-/// Log-likelihoods of the primitives: the mean over their rows, those left out apart. Infinitely unlikely without rows.
-pub(super) fn classes(filter: &Filter<'_>, evidence: &Evidence, left_out: &[bool]) -> Vec<f64> {
+/// Log-likelihoods of the primitives: the mean over those of their rows that are not left out. Infinitely unlikely
+/// without any.
+pub(super) fn classes(filter: &Filter<'_>, of_rows: &[f64], left_out: &[bool]) -> Vec<f64> {
     let rows = &filter.clips.rows;
     let of = |primitive: usize| {
-        let own = rows.iter().zip(&evidence.rows).enumerate();
+        let own = rows.iter().zip(of_rows).enumerate();
         let own: Vec<f64> = own
             .filter(|(r, (row, _))| row.primitive == primitive && !left_out[*r])
             .map(|(_, (_, e))| *e)
@@ -116,6 +146,15 @@ pub(super) fn classes(filter: &Filter<'_>, evidence: &Evidence, left_out: &[bool
         most + (own.iter().map(|e| (e - most).exp()).sum::<f64>() / own.len() as f64).ln()
     };
     (0..filter.vocabulary.primitives().len()).map(of).collect()
+}
+
+/// The unit of temperature: seconds, times the root of what the leading primitive costs a second. A clip that comes near
+/// nothing tells less than the same difference of two primitives does where one is met; by the cost itself it would tell
+/// too little, as much of that is the same for all.
+fn unit(classes: &[f64], secs: f64) -> f64 {
+    let most = classes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let cost = Some(-most / secs).filter(|c| c.is_finite());
+    secs * cost.unwrap_or(LEAST_COST).max(LEAST_COST).sqrt()
 }
 
 /// The scores by which the unknown is told: gain over movement of any kind, lead over the second, lead over the median
@@ -153,11 +192,11 @@ pub(super) fn scores(classes: &[f64], evidence: &Evidence, limits: &[f64]) -> [f
     ]
 }
 
-/// A clip of which something is left out: the primitives' log-likelihoods, the seconds that they are divided by, the
-/// clip, and its true primitive if that is among them.
+/// A clip of which something is left out: the primitives' log-likelihoods, the unit of their temperature, the clip, and
+/// its true primitive if that is among them.
 struct Trial {
     classes: Vec<f64>,
-    secs: f64,
+    unit: f64,
     fold: usize,
     truth: Option<usize>,
 }
@@ -179,13 +218,28 @@ pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned
         })
         .collect::<Result<_>>()?;
     let usual = Learned::usual(vocabulary.primitives().len());
-    let trials = trials(filter, &folds, &evidences);
+    let trusted = |trust: f64| {
+        let trials = trials(filter, &folds, &evidences, trust);
+        (trust, temperature(&trials), trials)
+    };
+    let candidates = ROUTE_TRUSTS.map(trusted);
+    let told = |c: &(f64, Option<(f64, f64)>, Vec<Trial>)| c.1.map_or(0.0, |(_, loss)| loss);
+    let routed = evidences.iter().any(|e| e.routes.is_some());
+    let best = match candidates.iter().all(|c| c.1.is_some()) && routed {
+        true => candidates
+            .into_iter()
+            .min_by(|a, b| told(a).total_cmp(&told(b))),
+        false => None,
+    };
+    let (route_trust, fitted, trials) = best.unwrap_or_else(|| trusted(usual.route_trust));
     let limits = limits(vocabulary, &trials, &evidences, kept, &usual);
-    let temperature = temperature(&trials)
+    let temperature = fitted
+        .map(|(temperature, _)| temperature)
         .or_else(|| Some(chance_lead(&trials)?.max(usual.temperature)))
         .unwrap_or(usual.temperature);
     let mut learned = Learned {
         temperature,
+        route_trust,
         limits,
         ..usual
     };
@@ -214,15 +268,19 @@ pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned
             .zip(&told)
             .filter(|(t, _)| t.truth.is_some())
             .map(|(t, (scores, _))| {
-                -loss(&t.classes, None, temperature * t.secs) - bare.unknown(scores)
+                -loss(&t.classes, None, temperature * t.unit) - bare.unknown(scores)
             })
             .collect();
         let keeping = quantile(&room, 1.0 - CALLED).unwrap_or(learned.bias);
         learned.bias = learned.bias.min(keeping - MARGIN);
     }
+    // Streams know no route.
+    let by_postures = self::trials(filter, &folds, &evidences, 0.0);
     let gains = |unknown: bool| -> Vec<f64> {
-        let of = told.iter().filter(|t| t.1 == unknown);
-        of.map(|t| t.0[0]).collect()
+        let of = by_postures.iter().filter(possible);
+        of.filter(|t| t.truth.is_none() == unknown)
+            .map(|t| scores(&t.classes, &evidences[t.fold], &learned.limits)[0])
+            .collect()
     };
     let (known, unknown) = (gains(false), gains(true));
     learned.unknown_per_sec = match (quantile(&known, 1.0 - KEPT), median(&unknown)) {
@@ -259,7 +317,12 @@ fn principal(vocabulary: &Vocabulary, primitive: usize) -> bool {
     matches!(source, ParameterSource::Principal { .. })
 }
 
-fn trials(filter: &Filter<'_>, folds: &[(usize, usize)], evidences: &[Evidence]) -> Vec<Trial> {
+fn trials(
+    filter: &Filter<'_>,
+    folds: &[(usize, usize)],
+    evidences: &[Evidence],
+    route_trust: f64,
+) -> Vec<Trial> {
     let rows = &filter.clips.rows;
     let mut trials = Vec::new();
     for (fold, (&(k, i), evidence)) in folds.iter().zip(evidences).enumerate() {
@@ -267,10 +330,12 @@ fn trials(filter: &Filter<'_>, folds: &[(usize, usize)], evidences: &[Evidence])
             .iter()
             .map(|r| r.primitive == k && r.exemplar == Some(i))
             .collect();
+        let weighed = evidence.weighed(route_trust);
         let mut trial = |left_out: &[bool], truth: Option<usize>| {
+            let classes = classes(filter, &weighed, left_out);
             trials.push(Trial {
-                classes: classes(filter, evidence, left_out),
-                secs: evidence.lasts(),
+                unit: unit(&classes, evidence.lasts()),
+                classes,
                 fold,
                 truth,
             });
@@ -280,7 +345,7 @@ fn trials(filter: &Filter<'_>, folds: &[(usize, usize)], evidences: &[Evidence])
             trial(&alone, Some(k));
             // A grid of parameters is nobody's: its exemplars are by one hand.
             if principal(filter.vocabulary, k) {
-                trial(&nearest_half(filter, evidence, &alone), Some(k));
+                trial(&nearest_half(filter, &weighed, &alone), Some(k));
             }
         }
         let whole: Vec<bool> = rows.iter().map(|r| r.primitive == k).collect();
@@ -291,7 +356,7 @@ fn trials(filter: &Filter<'_>, folds: &[(usize, usize)], evidences: &[Evidence])
 
 /// Leaves out the half of each primitive's rows that is likeliest beside those that are left out already. Rivals lose
 /// theirs as well: whoever is new is so in all movements.
-fn nearest_half(filter: &Filter<'_>, evidence: &Evidence, left_out: &[bool]) -> Vec<bool> {
+fn nearest_half(filter: &Filter<'_>, of_rows: &[f64], left_out: &[bool]) -> Vec<bool> {
     let rows = &filter.clips.rows;
     let mut all = left_out.to_vec();
     for k in 0..filter.vocabulary.primitives().len() {
@@ -301,7 +366,7 @@ fn nearest_half(filter: &Filter<'_>, evidence: &Evidence, left_out: &[bool]) -> 
         let mut own: Vec<usize> = (0..rows.len())
             .filter(|&r| rows[r].primitive == k && !left_out[r])
             .collect();
-        own.sort_by(|&a, &b| evidence.rows[b].total_cmp(&evidence.rows[a]));
+        own.sort_by(|&a, &b| of_rows[b].total_cmp(&of_rows[a]));
         for &r in &own[..own.len() / 2] {
             all[r] = true;
         }
@@ -331,8 +396,8 @@ fn limits(
     found.into_iter().map(|l| l.unwrap_or(middle)).collect()
 }
 
-/// The temperature at which the truth is most probable; `None` without known trials or rivals.
-fn temperature(trials: &[Trial]) -> Option<f64> {
+/// The temperature at which the truth is most probable, and what it then costs; `None` without known trials or rivals.
+fn temperature(trials: &[Trial]) -> Option<(f64, f64)> {
     let known: Vec<(&Trial, usize)> = trials
         .iter()
         .filter_map(|t| Some((t, t.truth?)))
@@ -343,14 +408,16 @@ fn temperature(trials: &[Trial]) -> Option<f64> {
     }
     let all = |t: f64| -> f64 {
         let of =
-            |(trial, truth): &(&Trial, usize)| loss(&trial.classes, Some(*truth), t * trial.secs);
-        known.iter().map(of).sum()
+            |(trial, truth): &(&Trial, usize)| loss(&trial.classes, Some(*truth), t * trial.unit);
+        let off = (t / USUAL_TEMPERATURE).ln();
+        known.iter().map(of).sum::<f64>() + TEMPERATURE_PRIOR * off * off
     };
-    let candidates = (0..=60).map(|k| 10f64.powf(-0.5 + 3.0 * f64::from(k) / 60.0));
-    candidates.min_by(|a, b| all(*a).total_cmp(&all(*b)))
+    let candidates = (0..=60).map(|k| 10f64.powf(-1.5 + 3.0 * f64::from(k) / 60.0));
+    let with_loss = candidates.map(|t| (t, all(t)));
+    with_loss.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// How far the likeliest of wrong answers leads the second, as a rule, a second of the clip: less than that tells nothing.
+/// How far the likeliest of wrong answers leads the second, as a rule, in units of temperature: less than that tells nothing.
 /// It stands for the temperature where every primitive has one exemplar, and nothing known can be left out. `None` where
 /// less than three primitives are.
 fn chance_lead(trials: &[Trial]) -> Option<f64> {
@@ -358,7 +425,7 @@ fn chance_lead(trials: &[Trial]) -> Option<f64> {
         let mut classes = trial.classes.clone();
         classes.sort_by(|a, b| b.total_cmp(a));
         let [first, second] = *classes.first_chunk()?;
-        Some((first - second) / trial.secs).filter(|lead| lead.is_finite())
+        Some((first - second) / trial.unit).filter(|lead| lead.is_finite())
     };
     let unknown = trials.iter().filter(|t| t.truth.is_none());
     median(&unknown.filter_map(lead).collect::<Vec<f64>>())

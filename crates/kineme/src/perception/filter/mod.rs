@@ -9,6 +9,7 @@ mod model;
 mod noise;
 mod place;
 mod recogniser;
+mod route;
 mod rows;
 mod sight;
 mod stream;

@@ -22,9 +22,7 @@ const MOST_PAIRS: usize = 200;
 
 /// The covariance of features about their row; `still` tells which of their numbers are of postures.
 ///
-/// Residuals are differences of two rows of one primitive at the same phase. Where exemplars are given by many people,
-/// or by one on several days, the more distant half of the pairs counts: a new person will be as far. Where a grid of
-/// parameters is known, neighbours on it count: between them lies everything that the primitive can be.
+/// Residuals are differences of two rows of one primitive at the same phase.
 pub(super) fn covariance(
     vocabulary: &Vocabulary,
     rows: &[Row],
@@ -45,27 +43,11 @@ pub(super) fn covariance(
         first += row.phases.len();
     }
     for primitive in 0..vocabulary.primitives().len() {
-        let members: Vec<usize> = (0..rows.len())
-            .filter(|&r| rows[r].primitive == primitive)
-            .collect();
-        let source = vocabulary.primitives()[primitive].parameters().source();
-        let principal = matches!(source, ParameterSource::Principal { .. });
-        let pairs = match principal || members.iter().all(|&r| rows[r].parameters.is_empty()) {
-            true => all_pairs(&members),
-            false => neighbours(rows, &members),
+        let residual = |(a, b): (usize, usize)| {
+            let r = residual((&rows[a], starts[a]), (&rows[b], starts[b]), features, dims);
+            (r.norm_squared() / r.ncols() as f64, r)
         };
-        let mut residuals: Vec<(f64, DMatrix<f64>)> = pairs
-            .into_iter()
-            .map(|(a, b)| {
-                let r = residual((&rows[a], starts[a]), (&rows[b], starts[b]), features, dims);
-                (r.norm_squared() / r.ncols() as f64, r)
-            })
-            .collect();
-        if principal && residuals.len() > 1 {
-            residuals.sort_by(|a, b| a.0.total_cmp(&b.0));
-            residuals.drain(..residuals.len() / 2);
-        }
-        for (_, r) in residuals {
+        for r in pairs(vocabulary, rows, primitive, residual) {
             // Two rows differ by twice what one differs from the truth.
             sum += &r * r.transpose() * 0.5;
             count += r.ncols() as f64;
@@ -76,6 +58,34 @@ pub(super) fn covariance(
     covariance * (1.0 - SHRINK)
         + diagonal * SHRINK
         + DMatrix::identity(dims, dims) * (FLOOR_M * FLOOR_M)
+}
+
+/// What is left between rows of a primitive, pair by pair; `residual` gives it with its size.
+///
+/// Where exemplars are given by many people, or by one on several days, the more distant half of the pairs counts: a new
+/// person will be as far. Where a grid of parameters is known, neighbours on it count: between them lies everything that
+/// the primitive can be.
+pub(super) fn pairs<R>(
+    vocabulary: &Vocabulary,
+    rows: &[Row],
+    primitive: usize,
+    residual: impl Fn((usize, usize)) -> (f64, R),
+) -> Vec<R> {
+    let members: Vec<usize> = (0..rows.len())
+        .filter(|&r| rows[r].primitive == primitive)
+        .collect();
+    let source = vocabulary.primitives()[primitive].parameters().source();
+    let principal = matches!(source, ParameterSource::Principal { .. });
+    let pairs = match principal || members.iter().all(|&r| rows[r].parameters.is_empty()) {
+        true => all_pairs(&members),
+        false => neighbours(rows, &members),
+    };
+    let mut residuals: Vec<(f64, R)> = pairs.into_iter().map(residual).collect();
+    if principal && residuals.len() > 1 {
+        residuals.sort_by(|a, b| a.0.total_cmp(&b.0));
+        residuals.drain(..residuals.len() / 2);
+    }
+    residuals.into_iter().map(|(_, r)| r).collect()
 }
 
 /// Pairs of rows, evenly taken where they are many.

@@ -5,6 +5,7 @@ use super::evidence::{Evidence, evidence};
 use super::features::{Feature, Moment};
 use super::learned::{Learned, NAME, classes, learn, scores};
 use super::model::Model;
+use super::route::Routes;
 use super::sight::Sight;
 use super::stream::Stream;
 use super::track::Network;
@@ -63,6 +64,8 @@ pub struct Filter<'v> {
     /// What whole clips are compared with, and what streams are.
     pub(super) clips: Model,
     pub(super) stream: Model,
+    /// Where the rows of clips lead.
+    routes: Option<Routes>,
     pub(super) displacements: Emission,
     pub(super) network: Network,
     pub(super) learned: Learned,
@@ -95,6 +98,7 @@ impl<'v> Filter<'v> {
         Ok(Self {
             displacements: stream.without(&stream.layout.still())?,
             network: Network::new(vocabulary, &stream.rows),
+            routes: Routes::new(vocabulary, &clips.rows)?,
             learned: kept.unwrap_or_else(|| Learned::usual(primitives)),
             vocabulary,
             settings,
@@ -132,7 +136,10 @@ impl<'v> Filter<'v> {
             false => &model.emission,
         };
         let moments = features.iter().map(|(f, dt)| (f, *dt));
-        Ok(evidence(&model.rows, emission, moments))
+        let mut evidence = evidence(&model.rows, emission, moments);
+        let routes = self.routes.as_ref();
+        evidence.routes = routes.and_then(|r| r.distances(seen.motion()));
+        Ok(evidence)
     }
 
     /// The frames that the filter's clock looks at.
@@ -146,9 +153,10 @@ impl<'v> Filter<'v> {
     fn judged(&self, seen: &Observations, share: &Share) -> Result<(Posterior, f64, Vec<f64>)> {
         let evidence = self.evidence(seen)?;
         let rows = &self.clips.rows;
-        let classes = classes(self, &evidence, &vec![false; rows.len()]);
+        let weighed = evidence.weighed(self.learned.route_trust);
+        let classes = classes(self, &weighed, &vec![false; rows.len()]);
         let most = classes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let temperature = self.learned.temperature * evidence.lasts();
+        let temperature = self.learned.heat(&classes, &evidence);
         let weights: Vec<f64> = classes
             .iter()
             .map(|c| ((c - most) / temperature).exp())
@@ -168,7 +176,7 @@ impl<'v> Filter<'v> {
         };
         let leading = posterior.leading().map_or(0, |(k, _)| k);
         let own = || {
-            let pairs = rows.iter().zip(&evidence.rows);
+            let pairs = rows.iter().zip(&weighed);
             pairs.filter(|(row, _)| row.primitive == leading)
         };
         let best = own().map(|(_, e)| *e).fold(f64::NEG_INFINITY, f64::max);
