@@ -8,9 +8,9 @@ mod tables;
 use std::path::Path;
 use std::sync::Arc;
 
+use kineme::math::statistics::quantile;
 use kineme::perception::calibrated;
 use kineme::perception::encoding::{Encoder, EncodingMethod, EncodingSettings};
-use kineme::math::statistics::quantile;
 use kineme::primitive::{Observations, Posterior, Primitive, Recogniser, Transitions};
 use kineme::{Motion, Vocabulary};
 use rayon::prelude::*;
@@ -168,9 +168,7 @@ fn least(values: &[f64; SETS.len()]) -> usize {
 
 /// The limit above which a cost is refused: what 95 in 100 motions of the tuning half that resemble a set stay below.
 pub fn limit(asked: &[(Question, Costs)]) -> f64 {
-    let own = asked
-        .iter()
-        .filter(|(q, _)| q.tuned() && q.truth.is_some());
+    let own = asked.iter().filter(|(q, _)| q.tuned() && q.truth.is_some());
     let costs: Vec<f64> = own.filter_map(|(_, c)| c.map(|c| c[least(&c)])).collect();
     quantile(&costs, KEPT).unwrap_or(f64::INFINITY)
 }
@@ -261,7 +259,9 @@ pub fn encoding_test(
     let (vocabulary, sets) = vocabulary()?;
     watch("reading motions that resemble them, or none");
     let motions = asked(corpus, &vocabulary, every)?;
-    let part = |a: &Asked| Ok((a.question.clone(), Movement::of(&a.motion)?));
+    let part = |a: &Asked| -> Result<(Question, Movement)> {
+        Ok((a.question.clone(), Movement::of(&a.motion)?))
+    };
     let parts: Vec<_> = motions.par_iter().map(part).collect::<Result<_>>()?;
     let mut methods = Vec::new();
     for (name, method) in METHODS {
@@ -325,7 +325,7 @@ fn by_the_paper(vocabulary: &Vocabulary, sets: &[usize], parts: &Parts) -> Resul
         ..EncodingSettings::default()
     };
     let encoder = Encoder::new(vocabulary, &settings)?;
-    let ask = |(question, part): &(Question, Movement)| {
+    let ask = |(question, part): &(Question, Movement)| -> Result<Answer> {
         let posterior = movement::posterior(&encoder, part)?;
         Ok(Answer::of(question, &posterior, sets))
     };
@@ -334,7 +334,7 @@ fn by_the_paper(vocabulary: &Vocabulary, sets: &[usize], parts: &Parts) -> Resul
 
 fn by_hypotheses(vocabulary: &Vocabulary, sets: &[usize], parts: &Parts) -> Result<Vec<Answer>> {
     let encoder = Encoder::new(vocabulary, &one_handed())?;
-    let ask = |(question, part): &(Question, Movement)| {
+    let ask = |(question, part): &(Question, Movement)| -> Result<(Question, Costs)> {
         Ok((question.clone(), costs(&encoder, part, sets)?))
     };
     let costs: Vec<_> = parts.par_iter().map(ask).collect::<Result<_>>()?;

@@ -87,18 +87,18 @@ pub fn strokes(values: &[f64]) -> Vec<(usize, usize, bool)> {
         Some(true) => high.0,
         _ => low.0,
     };
-    let ends: Vec<usize> = turns.iter().skip(1).map(|(k, _)| *k).chain([last]).collect();
+    let ends: Vec<usize> = turns
+        .iter()
+        .skip(1)
+        .map(|(k, _)| *k)
+        .chain([last])
+        .collect();
     let pairs = turns.iter().zip(ends);
     pairs.map(|(&(a, rises), b)| (a, b, rises)).collect()
 }
 
 /// Counts the decisions that lie wholly inside one stroke of a hand in which it does not rest: `[stroke][answer]`.
-pub fn tally(
-    paths: &EffectorPaths,
-    set: usize,
-    rising: usize,
-    taken: &[Taken],
-) -> [[usize; 2]; 2] {
+pub fn tally(paths: &EffectorPaths, set: usize, rising: usize, taken: &[Taken]) -> [[usize; 2]; 2] {
     let values = coordinate(paths, set);
     let rate = paths.rate_hz();
     let mut counts = [[0; 2]; 2];

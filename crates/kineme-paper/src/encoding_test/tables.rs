@@ -2,8 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::{Answer, EncodingTest, Method, RESEMBLING, RISING, SETS, Truth, refused, right, wilson};
 use super::strokes::{Told, share};
+use super::{
+    Answer, EncodingTest, Method, RESEMBLING, RISING, SETS, Truth, refused, right, wilson,
+};
 use crate::sets::Result;
 
 const INTRODUCTION: &str = "\n## Trajectory encoding\n\n\
@@ -125,7 +127,10 @@ impl EncodingTest {
                 writeln!(
                     out,
                     "| {name} | {} | {} | {} | {} | {} | {}, {} | {}, {} |",
-                    set.map_or("all".into(), |s| format!("{} ({} rises)", SETS[s], RISING[s])),
+                    set.map_or("all".into(), |s| format!(
+                        "{} ({} rises)",
+                        SETS[s], RISING[s]
+                    )),
                     own.len(),
                     own.iter().map(|t| t.right().1).sum::<usize>(),
                     shown(&own)?,
@@ -146,7 +151,15 @@ impl EncodingTest {
     /// Never; writing to memory cannot fail.
     pub fn csv(&self) -> Result<String> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        let head = ["judged", "method", "motions", "number", "resembles", "likeliest", "refused"];
+        let head = [
+            "judged",
+            "method",
+            "motions",
+            "number",
+            "resembles",
+            "likeliest",
+            "refused",
+        ];
         writer.write_record(head)?;
         for method in &self.methods {
             for a in &method.answers {
