@@ -7,7 +7,7 @@ use kineme::control::{KinematicRobot, Robot};
 use kineme::primitive::{Observations, Posterior};
 use kineme::{Motion, Role, Root, Vocabulary};
 use kineme_paper::choreographies::{SCRIPTS, choreography};
-use kineme_paper::encoding_test::{Answer, RESEMBLING, SETS, wilson};
+use kineme_paper::encoding_test::{Answer, Question, RESEMBLING, SETS, wilson};
 use kineme_paper::table1::{
     Altered, Clip, Counts, Decisions, MEASURES, Measure, Mode, MovementSettings, Row, Showing,
     Tally, animations, drawn, garwood, hybrids, movements, plan, recorded, reversed, shows,
@@ -328,9 +328,15 @@ fn sets_of_primitives_are_answered_by_what_their_primitives_share() {
     };
     // No primitive is likelier than none, the set of two is.
     let split = posterior([0.0, 0.0, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0], 0.4);
-    assert_eq!(Answer::of("k", Some(1), &split, &sets).set(), Some(1));
+    let question = |truth| Question {
+        kind: "k".into(),
+        truth,
+        number: 0,
+    };
+    let answer = Answer::of(&question(Some(1)), &split, &sets);
+    assert!(answer.is_right() && answer.set() == Some(1));
     let unknown = posterior([0.0, 0.0, 0.2, 0.1, 0.0, 0.0, 0.0, 0.0], 0.7);
-    let answer = Answer::of("k", None, &unknown, &sets);
+    let answer = Answer::of(&question(None), &unknown, &sets);
     assert_eq!(
         (answer.set(), answer.leading, answer.refused),
         (None, 1, true)

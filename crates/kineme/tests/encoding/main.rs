@@ -1,6 +1,7 @@
 //! Trajectory encoding: its laws, on movements made by hand.
 
 mod calibrated;
+mod performed;
 mod vocabulary;
 
 use kineme::perception::encoding::{

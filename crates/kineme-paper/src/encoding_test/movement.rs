@@ -1,0 +1,125 @@
+//! Which part of a recording is the movement, whose it is, and which set of primitives says it at the lowest cost.
+
+use kineme::motion::Motion;
+use kineme::perception::encoding::{
+    EffectorPaths, Encoder, EncodingMethod, EncodingSettings, Extent,
+};
+use kineme::primitive::Posterior;
+
+use super::SETS;
+use crate::sets::Result;
+
+/// The hand of the primitives.
+const HAND: &str = "right_hand";
+/// Both, in the order of the encoder's defaults.
+const HANDS: [&str; 2] = ["left_hand", HAND];
+
+/// A recording, and what of it is the movement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Movement {
+    /// The paths of every hand that moves while it performs, as of the right hand: those of the left are in the mirror.
+    pub hands: Vec<EffectorPaths>,
+    /// Both hands while one of them performs; in the mirror if the left one moves more.
+    pub both: EffectorPaths,
+}
+
+impl Movement {
+    /// By the hands' own kinematics: [`EffectorPaths::moving`] says which hands, [`EffectorPaths::performed`] when.
+    ///
+    /// # Errors
+    /// When the body has no hands or shoulders.
+    pub fn of(motion: &Motion) -> Result<Self> {
+        let names = HANDS.map(String::from);
+        let heading_secs = EncodingSettings::default().heading_secs;
+        Self::of_paths(&EffectorPaths::of_motion(motion, &names, heading_secs)?)
+    }
+
+    /// The same of the paths of the left and the right hand.
+    ///
+    /// # Errors
+    /// When the paths are not of the two hands.
+    pub fn of_paths(paths: &EffectorPaths) -> Result<Self> {
+        let paths = &paths.only(&HANDS)?;
+        let mirrored = paths.mirrored()?;
+        let lengths = paths.lengths_m();
+        let left = lengths[0] > lengths[1];
+        let moving = paths.moving();
+        let mut spans = Vec::new();
+        let mut hands = Vec::new();
+        for (hand, seen) in [&mirrored, paths].into_iter().enumerate() {
+            if moving[hand] {
+                let span = paths.performed(hand);
+                hands.push(seen.only(&[HAND])?.slice(span.clone())?);
+                spans.push(span);
+            }
+        }
+        let start = spans.iter().map(|s| s.start).min().unwrap_or(0);
+        let end = spans.iter().map(|s| s.end).max().unwrap_or(paths.frames());
+        let both = if left { &mirrored } else { paths };
+        Ok(Self {
+            hands,
+            both: both.slice(start..end)?,
+        })
+    }
+}
+
+/// How a hand is compared with the primitives: another's, choreographed, of other size, place and tempo. Directions
+/// count more than places and lengths, decisions are shorter than the strokes of a quick wave, and paces go from a
+/// quarter to four. Chosen on the tuning half.
+pub fn one_handed() -> EncodingSettings {
+    EncodingSettings {
+        effectors: vec![HAND.into()],
+        extent: Extent::Stream,
+        decision_secs: 0.1,
+        horizon_secs: 0.1,
+        position: 0.2,
+        displacement: 0.3,
+        direction: 1.0,
+        softness: 0.2,
+        rates: vec![0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0],
+        entry_cost: 0.1,
+        entry_phase: 1.0,
+        end_cost: 0.1,
+        switch_cost: 0.1,
+        ..EncodingSettings::default()
+    }
+}
+
+/// The published method on one hand.
+pub fn one_handed_paper() -> EncodingSettings {
+    EncodingSettings {
+        effectors: vec![HAND.into()],
+        method: EncodingMethod::Paper,
+        ..EncodingSettings::default()
+    }
+}
+
+/// What each set costs: the mean over the hands that move, by how long they perform. `None` where no hand moves.
+///
+/// # Errors
+/// When the encoder looks at something else than the right hand.
+pub fn costs(
+    encoder: &Encoder<'_>,
+    movement: &Movement,
+    sets: &[usize],
+) -> Result<Option<[f64; SETS.len()]>> {
+    let mut sums = [0.0; SETS.len()];
+    let mut all = 0.0;
+    for paths in &movement.hands {
+        let secs = paths.duration_secs();
+        for (set, sum) in sums.iter_mut().enumerate() {
+            let own: Vec<usize> = (0..sets.len()).filter(|p| sets[*p] == set).collect();
+            *sum += secs * encoder.explained(paths, &own)?.cost;
+        }
+        all += secs;
+    }
+    Ok((all > 0.0).then(|| sums.map(|s| s / all)))
+}
+
+/// What the published method says of a movement.
+///
+/// # Errors
+/// When the encoder looks at something else than both hands.
+pub fn posterior(encoder: &Encoder<'_>, movement: &Movement) -> Result<Posterior> {
+    Ok(encoder.encode("movement", &movement.both)?.posterior)
+}

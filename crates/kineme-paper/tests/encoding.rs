@@ -1,0 +1,113 @@
+//! The encoding test's own rules: whose movement, which set, which strokes.
+
+use kineme::perception::encoding::EffectorPaths;
+use kineme_paper::encoding_test::{Answer, Movement, Question, limit, strokes, tally};
+use nalgebra::Vector3;
+
+const RATE_HZ: f64 = 50.0;
+
+fn question(number: usize, truth: Option<usize>) -> Question {
+    Question {
+        kind: "made up".into(),
+        truth,
+        number,
+    }
+}
+
+/// Both hands: the right hangs, is raised, goes from side to side with an amplitude (metres), and is lowered; the left
+/// does the same in the mirror, so many times as large.
+fn waving(amplitude: f64, left: f64) -> EffectorPaths {
+    let names = ["left_hand", "right_hand"].map(String::from).to_vec();
+    let hand = |k: usize| -> (f64, f64) {
+        let t = k as f64 / RATE_HZ;
+        let up = (t / 0.5).min((4.5 - t) / 0.5).clamp(0.0, 1.0);
+        let side = if (0.5..4.0).contains(&t) {
+            amplitude * (std::f64::consts::TAU * (t - 0.5)).sin()
+        } else {
+            0.0
+        };
+        (up, side)
+    };
+    let points = (0..226)
+        .flat_map(|k| {
+            let (up, side) = hand(k);
+            let place = |share: f64, y: f64| {
+                Vector3::new(0.1, y + share * side * y.signum(), -0.6 + share * 0.8 * up)
+            };
+            [Some(place(left, 0.25)), Some(place(1.0, -0.25))]
+        })
+        .collect();
+    EffectorPaths::new(RATE_HZ, names, points).expect("paths")
+}
+
+#[test]
+fn the_hands_that_move_are_judged_and_the_left_one_in_the_mirror() {
+    for (left, hands) in [(0.0, 1), (0.1, 1), (1.0, 2)] {
+        let movement = Movement::of_paths(&waving(0.2, left)).expect("a movement");
+        assert_eq!(movement.hands.len(), hands, "{left}");
+    }
+    let both = Movement::of_paths(&waving(0.2, 1.0)).expect("a movement");
+    assert_eq!(both.hands[0], both.hands[1], "mirror images of one another");
+    let right = Movement::of_paths(&waving(0.2, 0.0)).expect("a movement");
+    let mirrored = waving(0.2, 0.0).mirrored().expect("the mirror");
+    let left = Movement::of_paths(&mirrored).expect("a movement");
+    assert_eq!(left, right, "left-handed or right-handed is the same");
+    let secs = right.hands[0].duration_secs();
+    assert!(
+        (3.0..4.4).contains(&secs),
+        "without way there and back: {secs}"
+    );
+}
+
+#[test]
+fn strokes_go_from_turning_point_to_turning_point() {
+    let cases: [(&[f64], &[(usize, usize, bool)]); 5] = [
+        (&[], &[]),
+        (&[0.0, 0.1, 0.05, 0.12], &[]),
+        (&[0.0, 0.2, 0.4, 0.35, 0.6], &[(0, 4, true)]),
+        (&[0.1, 0.0, 0.3, 0.0], &[(1, 2, true), (2, 3, false)]),
+        (&[0.5, 0.6, 0.1, 0.15, 0.4], &[(1, 2, false), (2, 4, true)]),
+    ];
+    for (values, wanted) in cases {
+        assert_eq!(strokes(values), wanted, "{values:?}");
+    }
+}
+
+#[test]
+fn decisions_count_inside_a_stroke_while_the_hand_goes_on() {
+    // Up for a second, still for a second, down for a second: 0.6 m each way.
+    let height = |k: usize| {
+        let t = k as f64 / RATE_HZ;
+        0.6 * t.min(1.0).min(3.0 - t) - 0.3
+    };
+    let points = (0..=150).map(|k| Some(Vector3::new(0.6, 0.0, height(k))));
+    let paths = EffectorPaths::new(RATE_HZ, vec!["right_hand".into()], points.collect());
+    let paths = paths.expect("paths");
+    let taken = [
+        (0.2, 0.4, Some(0)),
+        (0.4, 0.6, Some(1)),
+        (1.4, 1.6, Some(1)),
+        (2.4, 2.6, Some(1)),
+        (2.6, 2.8, None),
+    ];
+    assert_eq!(tally(&paths, 0, 0, &taken), [[1, 1], [0, 1]]);
+    assert_eq!(tally(&paths, 0, 1, &taken), [[1, 1], [1, 0]]);
+}
+
+#[test]
+fn the_cheapest_set_is_answered_up_to_a_limit_of_the_tuning_half() {
+    let costs = [0.4, 0.2, 0.2, 0.9];
+    let answer = Answer::cheapest(&question(1, Some(1)), Some(costs), 0.3);
+    assert_eq!((answer.set(), answer.is_right()), (Some(1), true));
+    let answer = Answer::cheapest(&question(1, Some(1)), Some(costs), 0.1);
+    assert_eq!((answer.set(), answer.leading), (None, 1));
+    assert!(Answer::cheapest(&question(0, None), None, 9.0).is_right());
+    // Only motions of the tuning half that resemble a set have a say.
+    let asked = |number, truth, cost| (question(number, truth), Some([cost, 5.0, 5.0, 5.0]));
+    let half = [
+        asked(0, Some(0), 0.3),
+        asked(1, Some(0), 4.0),
+        asked(2, None, 4.0),
+    ];
+    assert!((limit(&half) - 0.3).abs() < 1e-12);
+}
