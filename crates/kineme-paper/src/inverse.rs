@@ -107,7 +107,27 @@ fn told(primitive: &Primitive, p: &[f64], phase: f64) -> Result<bool> {
     Ok(p.is_empty() || least >= TOLD_RAD)
 }
 
-/// Random places far from all start and end postures of the vocabulary.
+/// Start and end postures are looked for at so many values of each parameter, evenly spaced.
+const ENDS: usize = 4;
+
+/// Start and end postures of a primitive: of its exemplars, and between them.
+fn ends(primitive: &Primitive) -> Result<Vec<Vec<f64>>> {
+    let m = primitive.parameters().dims();
+    let mut ends = Vec::new();
+    for phase in [0.0, 1.0] {
+        ends.extend((0..primitive.exemplars().len()).map(|i| primitive.registered(i, phase).pose));
+        for k in 0..ENDS.pow(m as u32) {
+            let digit = |j: usize| k / ENDS.pow(j as u32) % ENDS;
+            let p: Vec<f64> = (0..m)
+                .map(|j| digit(j) as f64 / (ENDS - 1) as f64)
+                .collect();
+            ends.push(primitive.pose(&p, phase)?);
+        }
+    }
+    Ok(ends)
+}
+
+/// Random places far from all start and end postures of the vocabulary, those of the same execution among them.
 fn draw(
     vocabulary: &Vocabulary,
     primitive: &Primitive,
@@ -116,12 +136,10 @@ fn draw(
 ) -> Result<Vec<(Vec<f64>, f64)>> {
     let body = vocabulary.body();
     let joints = moved(primitive);
-    let ends: Vec<Vec<f64>> = vocabulary
-        .primitives()
-        .iter()
-        .flat_map(|p| (0..p.exemplars().len()).map(move |i| (p, i)))
-        .flat_map(|(p, i)| [0.0, 1.0].map(|phase| p.registered(i, phase).pose))
-        .collect();
+    let mut all_ends = Vec::new();
+    for other in vocabulary.primitives() {
+        all_ends.extend(ends(other)?);
+    }
     let mut random = Pcg64::seed_from_u64(seed);
     let mut drawn = Vec::new();
     for _ in 0..1000 * places {
@@ -133,10 +151,9 @@ fn draw(
             .collect();
         let phase = random.random_range(0.0..1.0);
         let pose = primitive.pose(&p, phase)?;
-        if ends
-            .iter()
-            .all(|end| apart(body, &joints, &pose, end) > APART_RAD)
-        {
+        let far = |end: &Vec<f64>| apart(body, &joints, &pose, end) > APART_RAD;
+        let own = [primitive.pose(&p, 0.0)?, primitive.pose(&p, 1.0)?];
+        if all_ends.iter().chain(&own).all(far) {
             drawn.push((p, phase));
         }
     }

@@ -61,7 +61,8 @@ fn the_hands_that_move_are_judged_and_the_left_one_in_the_mirror() {
 
 #[test]
 fn strokes_go_from_turning_point_to_turning_point() {
-    let cases: [(&[f64], &[(usize, usize, bool)]); 5] = [
+    type Strokes<'a> = &'a [(usize, usize, bool)];
+    let cases: [(&[f64], Strokes); 5] = [
         (&[], &[]),
         (&[0.0, 0.1, 0.05, 0.12], &[]),
         (&[0.0, 0.2, 0.4, 0.35, 0.6], &[(0, 4, true)]),

@@ -196,3 +196,70 @@ fn a_punch_played_backward_is_no_punch() {
         );
     }
 }
+
+/// The first third of a jab, the way to where hooks begin within `secs`, and a hook: with the frames at which the way and the hook
+/// begin.
+fn jab_way_hook(vocabulary: &Vocabulary, secs: f64) -> (Motion, usize, usize) {
+    let [jab, hook] = [(0, [0.4, 0.6]), (1, [0.6, 0.3])]
+        .map(|(k, p)| vocabulary.primitives()[k].at(&p).expect("a course"));
+    let mut poses = Vec::new();
+    let way = (jab.secs_at(0.35) * 60.0) as usize;
+    for f in 0..way {
+        poses.push(jab.pose(jab.phase_at(f as f64 / 60.0)));
+    }
+    let (from, to) = (poses[way - 1].clone(), hook.pose(0.0));
+    let frames = (secs * 60.0) as usize;
+    for f in 1..frames {
+        let s = f as f64 / frames as f64;
+        let s = s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
+        poses.push(from.iter().zip(&to).map(|(a, b)| a + s * (b - a)).collect());
+    }
+    let begins = poses.len();
+    for f in 0..=(hook.duration_secs() * 60.0) as usize {
+        poses.push(hook.pose(hook.phase_at(f as f64 / 60.0)));
+    }
+    let roots = vec![Root::ORIGIN; poses.len()];
+    let body = Arc::clone(vocabulary.body());
+    let motion = Motion::new("jab, hook", body, 60.0, poses.concat(), roots).expect("a motion");
+    (motion, way, begins)
+}
+
+#[test]
+fn a_movement_that_interrupts_another_is_told_from_nearly_its_beginning_and_earlier_with_hindsight()
+{
+    let vocabulary = &VOCABULARIES[0];
+    let (motion, way, begins) = jab_way_hook(vocabulary, 0.6);
+    let ends = motion.frames();
+    let seen = Observations::complete(motion);
+    let affirmed = |lag_secs: f64| -> Vec<Option<usize>> {
+        let settings = FilterSettings {
+            lag_secs,
+            ..FilterSettings::default()
+        };
+        let filter = Filter::new(vocabulary, &settings).expect("a filter");
+        let answers = readings(&filter, &seen).expect("answers");
+        let lag = (60.0 * lag_secs) as usize;
+        let of = |f: usize| {
+            let told = &answers[(f + lag).min(ends - 1)].posterior.primitives;
+            told.iter().position(|p| *p > 0.5)
+        };
+        (0..ends).map(of).collect()
+    };
+    for lag_secs in [0.0, 0.1] {
+        let affirmed = affirmed(lag_secs);
+        let share = |from: usize, until: usize, what: Option<usize>| {
+            let right = affirmed[from..until].iter().filter(|a| **a == what).count();
+            right as f64 / (until - from) as f64
+        };
+        assert!(share(6, way, Some(0)) > 0.9, "the jab: {affirmed:?}");
+        assert!(
+            share(begins + 9, ends - 3, Some(1)) > 0.95,
+            "the hook: {affirmed:?}"
+        );
+    }
+    let late = |affirmed: &[Option<usize>]| {
+        let hook = affirmed[begins..].iter().position(|a| *a == Some(1));
+        hook.expect("a hook")
+    };
+    assert!(late(&affirmed(0.1)) < late(&affirmed(0.0)));
+}

@@ -158,7 +158,7 @@ pub struct Table {
 }
 
 /// The ways of deciding of the main table.
-const MODES: [Mode; 8] = [
+const MODES: [Mode; 9] = [
     Mode::Never,
     Mode::Paper { n: 1, stride: 1 },
     Mode::Paper { n: 2, stride: 1 },
@@ -166,7 +166,11 @@ const MODES: [Mode; 8] = [
     FRAME,
     Mode::FILTER,
     Mode::Filter {
-        lag_secs: 0.0,
+        lag_secs: 0.1,
+        held_secs: 0.0,
+    },
+    Mode::Filter {
+        lag_secs: 0.1,
         held_secs: 0.1,
     },
     Mode::Spans,

@@ -4,9 +4,7 @@
 //! on a loop have double eigenvalues, of which a single Krylov vector sees one; ordered by value, not magnitude,
 //! because geodesics give large negative eigenvalues too.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
-use faer::{Mat, Par};
+use faer::Mat;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
@@ -14,6 +12,7 @@ use rayon::prelude::*;
 use super::krylov::{Krylov, WIDTH};
 use crate::error::{Error, Result};
 use crate::math::distances::DistanceMatrix;
+use crate::math::eigen::decompose;
 
 /// Matrices up to this size are decomposed whole.
 const WHOLE: usize = 1000;
@@ -77,29 +76,6 @@ fn whole(distances: &DistanceMatrix, count: usize) -> Result<Eigenpairs> {
             .collect(),
         negative_share: if all > 0.0 { negative / all } else { 0.0 },
     })
-}
-
-/// All eigenpairs of a symmetric matrix, rising. On one thread: the order of sums must not depend on their number.
-pub(super) fn decompose(matrix: &Mat<f64>) -> Result<(Vec<f64>, Mat<f64>)> {
-    let len = matrix.nrows();
-    let mut values = faer::Col::<f64>::zeros(len);
-    let mut vectors = Mat::zeros(len, len);
-    let scratch = self_adjoint_evd_scratch::<f64>(
-        len,
-        ComputeEigenvectors::Yes,
-        Par::Seq,
-        Default::default(),
-    );
-    self_adjoint_evd(
-        matrix.as_ref(),
-        values.as_diagonal_mut(),
-        Some(vectors.as_mut()),
-        Par::Seq,
-        MemStack::new(&mut MemBuffer::new(scratch)),
-        Default::default(),
-    )
-    .map_err(|_| Error::unsupported("the eigenvalues of the distances did not converge"))?;
-    Ok((values.iter().copied().collect(), vectors))
 }
 
 fn iterative(distances: &DistanceMatrix, count: usize) -> Result<Eigenpairs> {

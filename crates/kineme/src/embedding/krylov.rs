@@ -5,9 +5,9 @@ use rand::RngExt;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
-use super::eigen::decompose;
 use crate::error::Result;
 use crate::math::distances::DistanceMatrix;
+use crate::math::eigen::decompose;
 
 /// Vectors in a block.
 pub(super) const WIDTH: usize = 4;

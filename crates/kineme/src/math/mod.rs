@@ -1,6 +1,7 @@
-//! Floor 0: rotations, splines, statistics, distances, partitions. Knows no skeleton.
+//! Floor 0: rotations, splines, statistics, distances, partitions, eigenpairs. Knows no skeleton.
 
 pub mod distances;
+pub(crate) mod eigen;
 pub mod local_scale;
 pub mod partition;
 pub mod rotation;

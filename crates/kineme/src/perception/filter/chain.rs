@@ -2,9 +2,10 @@
 
 use super::rows::Row;
 
-/// A movement may be done at two fifths to five halves of the pace of its row.
-const SLOWEST: f64 = 0.4;
-const FASTEST: f64 = 2.5;
+/// People do a movement at two fifths to five halves of the pace of its row; a body that carries it out, hardly faster
+/// or slower.
+pub(super) const LOOSE: [f64; 2] = [0.4, 2.5];
+pub(super) const TIGHT: [f64; 2] = [0.9, 1.11];
 /// Paces at which the advance is looked at.
 const PACES: usize = 17;
 
@@ -19,10 +20,10 @@ pub(super) struct Kernel {
 impl Kernel {
     /// The advance in `secs`: paces log-uniform between the slowest and the fastest, spread over the two moments between which
     /// each comes to lie.
-    pub fn of(row: &Row, secs: f64) -> Self {
+    pub fn of(row: &Row, secs: f64, [slowest, fastest]: [f64; 2]) -> Self {
         let advance = |k: usize| {
             let share = k as f64 / (PACES - 1) as f64;
-            let pace = SLOWEST * (FASTEST / SLOWEST).powf(share);
+            let pace = slowest * (fastest / slowest).powf(share);
             // No advance goes once round: what is beyond cannot be told from less.
             (secs / row.step_secs * pace).min(row.phases.len() as f64 - 1.0)
         };
@@ -66,15 +67,9 @@ impl Kernel {
         beyond
     }
 
-    /// The step backward, for smoothing: what each moment is worth when its successors are worth so much, leaving at
-    /// the end is worth `end`, and so is breaking off, which happens with the chance `leave`.
-    pub fn retreat(
-        &self,
-        cyclic: bool,
-        worth: &[f64],
-        (end, leave): (f64, f64),
-        before: &mut [f64],
-    ) {
+    /// The step backward, for smoothing: what each moment is worth when its successors are worth so much, and going
+    /// beyond the end is worth `end`.
+    pub fn retreat(&self, cyclic: bool, worth: &[f64], end: f64, before: &mut [f64]) {
         let n = worth.len();
         before.fill(0.0);
         for (k, w) in self.weights.iter().enumerate() {
@@ -84,10 +79,10 @@ impl Kernel {
                 false => (n - by.min(n), 0),
             };
             for (x, v) in before[..kept].iter_mut().zip(&worth[n - kept..]) {
-                *x += w * ((1.0 - leave) * v + leave * end);
+                *x += w * v;
             }
             for (x, v) in before[kept..].iter_mut().zip(&worth[..round]) {
-                *x += w * ((1.0 - leave) * v + leave * end);
+                *x += w * v;
             }
             if !cyclic {
                 for x in &mut before[kept..] {

@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
-use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
+use nalgebra::{Cholesky, DMatrix, DVector};
 use pulp::{Arch, Simd, WithSimd};
 
 use super::features::Feature;
 use crate::error::{Error, Result};
+use crate::math::eigen::principal;
 
 /// One part of the features, hands or body: its own covariance, its own trust.
 #[derive(Debug, Clone)]
@@ -144,16 +145,10 @@ impl Whitened {
         for mut column in centred.column_iter_mut() {
             column -= &mean;
         }
-        let spread = &centred * centred.transpose() / states as f64;
-        let eigen = SymmetricEigen::new(spread);
-        let mut order: Vec<usize> = (0..n).collect();
-        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-        order.truncate(part.directions.max(1));
-        let rows: Vec<_> = order
-            .iter()
-            .map(|&k| eigen.eigenvectors.column(k).transpose())
-            .collect();
-        let basis = DMatrix::from_rows(&rows);
+        let (mut spread, directions) = principal(&centred)?;
+        let kept = part.directions.clamp(1, n);
+        spread.truncate(kept);
+        let basis = directions.rows(0, kept).into_owned();
         let inverse = factor
             .l()
             .solve_lower_triangular(&DMatrix::identity(n, n))
@@ -164,10 +159,7 @@ impl Whitened {
             column += &mean;
         }
         // An observation is as white as ever about the rows.
-        let variances = DVector::from_iterator(
-            order.len(),
-            order.iter().map(|&k| eigen.eigenvalues[k].max(0.0) + 1.0),
-        );
+        let variances = DVector::from_iterator(kept, spread.iter().map(|v| v.max(0.0) + 1.0));
         Ok(Self {
             trust_per_sec: part.trust_per_sec,
             known,

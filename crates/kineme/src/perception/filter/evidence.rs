@@ -1,6 +1,6 @@
 //! Evidence of whole clips: how probable the clip is if one row was followed from its beginning to its end.
 
-use super::chain::Kernel;
+use super::chain::{Kernel, LOOSE};
 use super::emission::{Emission, Fit};
 use super::features::Feature;
 use super::rows::Row;
@@ -62,7 +62,7 @@ pub(super) fn evidence<'a>(
         broad += dt * fit.broad;
         secs += dt;
         if (kernels.0 - dt).abs() > 1e-9 || kernels.1.is_empty() {
-            kernels = (dt, rows.iter().map(|r| Kernel::of(r, dt)).collect());
+            kernels = (dt, rows.iter().map(|r| Kernel::of(r, dt, LOOSE)).collect());
         }
         let stay = (-dt / REST_SECS).exp();
         let mut first = 0;

@@ -3,8 +3,10 @@
 mod chain;
 mod emission;
 mod evidence;
+mod exact;
 mod features;
 mod learned;
+mod manner;
 mod model;
 mod noise;
 mod place;
@@ -13,6 +15,7 @@ mod route;
 mod rows;
 mod sight;
 mod stream;
+mod tangents;
 mod track;
 
 pub use recogniser::{Filter, FilterSettings};

@@ -5,10 +5,12 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::emission::{Emission, Part};
+use super::exact::{Exact, Tangents};
 use super::features::{Feature, Layout, Moment, Recent, offset};
 use super::noise::covariance;
 use super::recogniser::FilterSettings;
 use super::rows::{Row, rows};
+use super::tangents::tangents;
 use crate::error::Result;
 use crate::primitive::Vocabulary;
 
@@ -29,6 +31,8 @@ pub(super) struct Model {
     parts: Vec<Part>,
     /// For complete observations.
     pub emission: Emission,
+    /// What varies around the rows' moments, where that is known.
+    tangents: Option<Tangents>,
 }
 
 impl Model {
@@ -64,8 +68,14 @@ impl Model {
                 directions: settings.directions,
             })
             .collect();
+        // Half of the first moments' posture taken off, a body is not where the manifold has it.
+        let tangents = match offset {
+            true => None,
+            false => tangents(vocabulary, &rows, &features, dims)?,
+        };
         Ok(Self {
             emission: Emission::new(&parts, &features, dims, &[])?,
+            tangents,
             layout,
             rows,
             bounds,
@@ -78,6 +88,13 @@ impl Model {
     /// The same without the numbers that are unknown: the Gaussian's marginal.
     pub fn without(&self, unknown: &[bool]) -> Result<Emission> {
         Emission::new(&self.parts, &self.features, self.layout.dims(), unknown)
+    }
+
+    /// How well moments fit the manifold itself when certain numbers are unknown, where that can be told.
+    pub fn exact(&self, unknown: &[bool]) -> Result<Option<Exact>> {
+        let still = self.layout.still();
+        let of = |tangents| Exact::new(&self.features, tangents, &still, unknown);
+        Ok(self.tangents.as_ref().map(of).transpose()?.flatten())
     }
 
     /// Features of a clip's moments, each with the seconds since the one before.

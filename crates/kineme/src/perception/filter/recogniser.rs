@@ -2,6 +2,7 @@
 
 use super::emission::Emission;
 use super::evidence::{Evidence, evidence};
+use super::exact::Exact;
 use super::features::{Feature, Moment};
 use super::learned::{Learned, NAME, classes, learn, scores};
 use super::model::Model;
@@ -67,7 +68,10 @@ pub struct Filter<'v> {
     /// Where the rows of clips lead.
     routes: Option<Routes>,
     pub(super) displacements: Emission,
+    pub(super) exact: Option<Exact>,
     pub(super) network: Network,
+    /// The same where movements are carried out exactly.
+    pub(super) exact_network: Network,
     pub(super) learned: Learned,
 }
 
@@ -97,8 +101,10 @@ impl<'v> Filter<'v> {
         let kept = vocabulary.calibration(NAME).and_then(Learned::of);
         Ok(Self {
             displacements: stream.without(&stream.layout.still())?,
-            network: Network::new(vocabulary, &stream.rows),
             routes: Routes::new(vocabulary, &clips.rows)?,
+            exact: stream.exact(&[])?,
+            network: Network::new(vocabulary, &stream.rows, false),
+            exact_network: Network::new(vocabulary, &stream.rows, true),
             learned: kept.unwrap_or_else(|| Learned::usual(primitives)),
             vocabulary,
             settings,

@@ -160,6 +160,12 @@ fn rows_of(index: usize, primitive: &Primitive, most: usize) -> Result<Vec<Row>>
     Ok(rows)
 }
 
+/// How far apart the grid's points lie, of `m` parameters; `None` where there is no grid.
+pub(super) fn spacing(m: usize) -> Option<f64> {
+    let count = GRID.get(m.checked_sub(1)?)?;
+    Some(1.0 / (count - 1) as f64)
+}
+
 /// Points of [0, 1]^m between the exemplars; none where parameters are principal coordinates.
 fn grid(primitive: &Primitive) -> Vec<Vec<f64>> {
     let m = primitive.parameters().dims();
@@ -272,6 +278,25 @@ fn sample_of(motion: &Motion, share: f64) -> Sample {
 }
 
 impl Row {
+    /// How much of a moment the body stands still, before the movement or after it: these moments are the first and the
+    /// last, many times. Half of the one with which the movement begins, and of the one with which it ends.
+    pub fn rests(&self, k: usize) -> f64 {
+        let ends = self.progress[k] == 0.0 || self.progress[k] == 1.0;
+        match (self.cyclic, ends) {
+            (false, true) if self.stands(k) => 1.0,
+            (false, true) => 0.5,
+            _ => 0.0,
+        }
+    }
+
+    /// Whether the body stands still throughout a moment.
+    pub fn stands(&self, k: usize) -> bool {
+        let last = self.progress.len() - 1;
+        let like =
+            |share: f64, beside: usize| self.progress[k] == share && self.progress[beside] == share;
+        !self.cyclic && (like(0.0, (k + 1).min(last)) || like(1.0, k.saturating_sub(1)))
+    }
+
     /// What moves along the row.
     pub fn path<'a>(&self, vocabulary: &'a Vocabulary) -> Result<Path<'a>> {
         let primitive = &vocabulary.primitives()[self.primitive];

@@ -2,11 +2,13 @@
 
 use std::collections::VecDeque;
 
-use super::chain::Kernel;
 use super::emission::{Emission, Fit};
+use super::exact::Exact;
 use super::features::{Feature, Recent};
+use super::manner::{Belief, Kernels};
 use super::place::{Spread, place};
 use super::recogniser::Filter;
+use super::rows::Row;
 use super::sight::Sight;
 use super::track::Mass;
 use crate::error::Result;
@@ -29,13 +31,18 @@ pub(super) struct Stream<'a> {
     sight: Sight<'a>,
     recent: Recent,
     patterns: Patterns<'a>,
-    kernels: (f64, Vec<Kernel>),
-    mass: Mass,
+    kernels: Option<Kernels>,
+    /// States of a body that stands still.
+    still: Vec<usize>,
+    belief: Belief,
     /// When the filter last looked.
     looked: Option<f64>,
     fit: Fit,
+    exact: Vec<f64>,
     /// What was looked at within the lag, the latest last.
     lag: VecDeque<Look>,
+    /// What is believed now of the looks within the lag, the oldest first.
+    hindsight: Vec<Mass>,
     answer: Option<Reading>,
     lag_secs: f64,
 }
@@ -44,27 +51,34 @@ pub(super) struct Stream<'a> {
 struct Look {
     secs: f64,
     dt: f64,
-    mass: Mass,
-    likelihood: Mass,
+    belief: Belief,
+    likelihood: Belief,
     pose: Vec<f64>,
 }
 
-/// The emission for what is known, and for displacements alone.
-struct Pair {
+/// The emission for what is known, for displacements alone, and of the manifold itself.
+struct Known {
     all: Emission,
     displacements: Emission,
+    exact: Option<Exact>,
 }
 
 struct Patterns<'a> {
     filter: &'a Filter<'a>,
-    made: VecDeque<Pair>,
+    made: VecDeque<Known>,
 }
 
 impl Patterns<'_> {
     /// The emissions when these numbers are unknown.
-    fn of(&mut self, unknown: &[bool]) -> Result<(&Emission, &Emission)> {
+    fn of(&mut self, unknown: &[bool]) -> Result<(&Emission, &Emission, Option<&Exact>)> {
         if !unknown.contains(&true) {
-            return Ok((&self.filter.stream.emission, &self.filter.displacements));
+            let Filter {
+                stream,
+                displacements,
+                exact,
+                ..
+            } = self.filter;
+            return Ok((&stream.emission, displacements, exact.as_ref()));
         }
         let found = self.made.iter().position(|p| p.all.unknown == unknown);
         let at = match found {
@@ -73,16 +87,18 @@ impl Patterns<'_> {
                 let model = &self.filter.stream;
                 let still = model.layout.still();
                 let hidden: Vec<bool> = still.iter().zip(unknown).map(|(s, u)| *s || *u).collect();
-                let pair = Pair {
+                let known = Known {
                     all: model.without(unknown)?,
                     displacements: model.without(&hidden)?,
+                    exact: model.exact(unknown)?,
                 };
                 self.made.truncate(PATTERNS - 1);
-                self.made.push_front(pair);
+                self.made.push_front(known);
                 0
             }
         };
-        Ok((&self.made[at].all, &self.made[at].displacements))
+        let known = &self.made[at];
+        Ok((&known.all, &known.displacements, known.exact.as_ref()))
     }
 }
 
@@ -98,11 +114,14 @@ impl<'a> Stream<'a> {
                 filter,
                 made: VecDeque::new(),
             },
-            kernels: (f64::NAN, Vec::new()),
-            mass: filter.network.prior(&model.rows),
+            kernels: None,
+            still: still(&model.rows, &filter.network.starts),
+            belief: Belief::prior(filter.network.prior(&model.rows), filter.exact.is_some()),
             looked: None,
             fit: Fit::default(),
+            exact: Vec::new(),
             lag: VecDeque::new(),
+            hindsight: Vec::new(),
             answer: None,
             lag_secs,
             filter,
@@ -132,14 +151,16 @@ impl<'a> Stream<'a> {
                 self.lag.pop_front();
             }
         }
-        let mut last = readings.iter().flatten().next().cloned();
-        let filled = readings.into_iter().map(|r| {
-            if r.is_some() {
-                last = r;
-            }
-            last.clone()
-        });
-        Ok(filled.flatten().collect())
+        // A frame that was not looked at is answered as the look nearest in time.
+        let looked: Vec<usize> = (0..frames).filter(|&f| readings[f].is_some()).collect();
+        let nearest = |f: usize| {
+            let after = looked.partition_point(|&l| l < f);
+            let beside = [after.checked_sub(1), Some(after)].into_iter().flatten();
+            let looks = beside.filter_map(|k| looked.get(k).copied());
+            looks.min_by_key(|&l| l.abs_diff(f))
+        };
+        let answer = |f: usize| readings[nearest(f)?].clone();
+        Ok((0..frames).filter_map(answer).collect())
     }
 
     /// Takes an observation; whether it was looked at.
@@ -165,26 +186,38 @@ impl<'a> Stream<'a> {
 
     /// Takes a feature and believes what it says.
     fn look(&mut self, feature: &Feature, secs: f64, dt: f64) -> Result<Look> {
-        let (all, displacements) = self.patterns.of(&feature.unknown)?;
+        let (all, displacements, exact) = self.patterns.of(&feature.unknown)?;
         all.fit(feature, &mut self.fit);
         let rows = &self.filter.stream.rows;
         if self.looked.is_some() {
-            if self.kernels.1.is_empty() || (self.kernels.0 - dt).abs() > 1e-6 {
-                self.kernels = (dt, rows.iter().map(|r| Kernel::of(r, dt)).collect());
-            }
-            let network = &self.filter.network;
-            self.mass = network.forward(rows, &self.kernels.1, &self.mass, dt);
+            let both = self.belief.exact.is_some();
+            let kept = self.kernels.take();
+            let kept = kept.filter(|k| (k.secs - dt).abs() <= 1e-6);
+            let kernels = kept.unwrap_or_else(|| Kernels::of(rows, dt, both));
+            self.belief = self.belief.forward(self.filter, &kernels);
+            self.kernels = Some(kernels);
         }
         // At rest the displacements are nothing, and the posture may be any: it fits as postures usually do.
         let posture = (all.usual_cost() - displacements.usual_cost()).max(0.0);
         let rest = dt * (STILL * displacements.fit_to_zero(feature) - posture);
         let none = dt * (self.fit.broad + self.filter.learned.unknown_per_sec);
-        let likelihood = Mass::likelihood(&self.fit.states, dt, rest, none);
-        self.mass.weigh(&likelihood);
+        let mut exactly = None;
+        if let Some(exact) = exact {
+            exact.fit(feature, &self.fit.states, all.usual_cost(), &mut self.exact);
+            for log in &mut self.exact {
+                *log += self.fit.broad;
+            }
+            // Who stands where movements begin or end stands there exactly, and does not move.
+            let logs = self.still.iter().map(|&s| dt * self.exact[s]);
+            let standing = log_mean_exp(logs) - dt * exact.moving(feature);
+            exactly = Some((self.exact.as_slice(), standing));
+        }
+        let likelihood = likelihood(&self.fit.states, exactly, dt, rest, none);
+        self.belief.weigh(&likelihood);
         Ok(Look {
             secs,
             dt,
-            mass: self.mass.clone(),
+            belief: self.belief.clone(),
             likelihood,
             pose: self.sight.pose(),
         })
@@ -192,15 +225,15 @@ impl<'a> Stream<'a> {
 
     /// What is believed of each look within the lag, the oldest first, in the light of those after it.
     fn smoothed(&self) -> Vec<Mass> {
-        let (network, rows) = (&self.filter.network, &self.filter.stream.rows);
+        let rows = &self.filter.stream.rows;
         let mut smoothed = Vec::with_capacity(self.lag.len());
-        let mut worth: Option<Mass> = None;
+        let mut worth: Option<Belief> = None;
         for (k, look) in self.lag.iter().enumerate().rev() {
-            let mut mass = look.mass.clone();
+            let mut belief = look.belief.clone();
             if let Some(worth) = &worth {
-                mass.weigh(worth);
+                belief.weigh(worth);
             }
-            smoothed.push(mass);
+            smoothed.push(belief.whole());
             if k == 0 {
                 break;
             }
@@ -211,15 +244,16 @@ impl<'a> Stream<'a> {
                     worth
                 }
             };
-            let kernels: Vec<Kernel>;
-            let kernels = match (self.kernels.0 - look.dt).abs() <= 1e-6 {
-                true => &self.kernels.1,
-                false => {
-                    kernels = rows.iter().map(|r| Kernel::of(r, look.dt)).collect();
-                    &kernels
+            let kept = self.kernels.as_ref();
+            let made: Kernels;
+            let kernels = match kept.filter(|k| (k.secs - look.dt).abs() <= 1e-6) {
+                Some(kept) => kept,
+                None => {
+                    made = Kernels::of(rows, look.dt, look.belief.exact.is_some());
+                    &made
                 }
             };
-            worth = Some(network.backward(rows, kernels, &seen, look.dt));
+            worth = Some(seen.backward(self.filter, kernels));
         }
         smoothed.reverse();
         smoothed
@@ -228,21 +262,70 @@ impl<'a> Stream<'a> {
 
 impl Listener for Stream<'_> {
     fn hear(&mut self, seen: &Observation<'_>) -> Result<Reading> {
-        let looked = self.take(seen)?;
-        if let (false, Some(answer)) = (looked, &self.answer) {
+        let mut news = self.take(seen)?;
+        if news {
+            self.hindsight = self.smoothed();
+        }
+        // The look nearest to the moment that is asked for; those before it are of no use any more.
+        let from = seen.secs - self.lag_secs;
+        let apart = |look: &Look| (look.secs - from).abs();
+        while self.lag.len() > 1 && apart(&self.lag[1]) <= apart(&self.lag[0]) + 1e-9 {
+            self.lag.pop_front();
+            self.hindsight.remove(0);
+            news = true;
+        }
+        if let (false, Some(answer)) = (news, &self.answer) {
             return Ok(answer.clone());
         }
-        let from = seen.secs - self.lag_secs;
-        while self.lag.get(1).is_some_and(|l| l.secs <= from + 1e-9) {
-            self.lag.pop_front();
-        }
-        let masses = self.smoothed();
-        let mass = masses.first().unwrap_or(&self.mass);
         let pose = self.lag.front().map(|l| l.pose.as_slice());
-        let reading = self.filter.reading(mass, pose)?;
+        let reading = match self.hindsight.first() {
+            Some(mass) => self.filter.reading(mass, pose)?,
+            None => self.filter.reading(&self.belief.clone().whole(), pose)?,
+        };
         self.answer = Some(reading.clone());
         Ok(reading)
     }
+}
+
+/// Likelihoods in both manners, up to a factor that all share, from logarithms: of the states, a second, alike and
+/// exactly, the latter with that of standing still where movements begin or end; of rest; of unknown movement.
+fn likelihood(
+    alike: &[f64],
+    exact: Option<(&[f64], f64)>,
+    dt: f64,
+    rest: f64,
+    none: f64,
+) -> Belief {
+    let highest = |logs: &[f64]| dt * logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let mut most = highest(alike).max(rest).max(none);
+    if let Some((exact, standing)) = exact {
+        most = most.max(highest(exact)).max(standing);
+    }
+    Belief {
+        alike: Mass::likelihood(alike, dt, rest, none, most),
+        exact: exact
+            .map(|(logs, standing)| Mass::likelihood(logs, dt, rest.max(standing), none, most)),
+    }
+}
+
+/// The logarithm of the mean of what these are the logarithms of; minus infinity of none.
+fn log_mean_exp(logs: impl Iterator<Item = f64> + Clone) -> f64 {
+    let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
+    if most == f64::NEG_INFINITY {
+        return most;
+    }
+    let (sum, count) = logs.fold((0.0, 0.0), |(sum, n), l| (sum + (l - most).exp(), n + 1.0));
+    most + (sum / count).ln()
+}
+
+/// States of a body that stands still before a movement or after it.
+fn still(rows: &[Row], starts: &[usize]) -> Vec<usize> {
+    let mut still = Vec::new();
+    for (row, start) in rows.iter().zip(starts) {
+        let stands = (0..row.progress.len()).filter(|&k| row.stands(k));
+        still.extend(stands.map(|k| start + k));
+    }
+    still
 }
 
 impl Filter<'_> {
@@ -253,16 +336,10 @@ impl Filter<'_> {
         let mut rest = mass.rest;
         for (r, row) in rows.iter().enumerate() {
             let own = &mass.states[self.network.starts[r]..self.network.starts[r + 1]];
-            let last = own.len() - 1;
             for (k, m) in own.iter().enumerate() {
-                // Standing still before or after a movement is rest; its moments are the first and last, many times.
-                let still = !row.cyclic
-                    && ((row.progress[k] == 0.0 && row.progress[(k + 1).min(last)] == 0.0)
-                        || (row.progress[k] == 1.0 && row.progress[k.saturating_sub(1)] == 1.0));
-                match still {
-                    true => rest += m,
-                    false => primitives[row.primitive] += m,
-                }
+                let resting = row.rests(k) * m;
+                rest += resting;
+                primitives[row.primitive] += m - resting;
             }
         }
         let posterior = Posterior {

@@ -8,11 +8,14 @@ use crate::primitive::Vocabulary;
 /// between rest and unknown movement.
 const LEAVE: f64 = 0.3;
 const BEGIN: f64 = 2.0;
+/// The same of a movement that has ended, where the body need not stand still afterwards.
+const ENDED: f64 = 20.0;
 const CHANGE: f64 = 0.5;
 /// What follows a movement that has ended: rest, something unknown, or another primitive.
 const AFTER: [f64; 3] = [0.3, 0.2, 0.5];
 /// A movement is entered at its beginning, within so much of it ...
 const ENTRY: f64 = 0.06;
+const ENTRY_EXACT: f64 = 0.01;
 /// ... but for one time in so many, when it is entered anywhere.
 const ANYWHERE: f64 = 0.15;
 /// Before anything was seen: rest, unknown, and all primitives alike.
@@ -25,6 +28,8 @@ pub(super) struct Network {
     pub starts: Vec<usize>,
     /// How the mass that enters a primitive is spread over its rows' states.
     entry: Vec<f64>,
+    /// Rates at which states are left before their row ends, a second.
+    leave: Vec<f64>,
     /// `n x n`: which primitive follows which.
     follow: Vec<f64>,
     primitives: usize,
@@ -39,17 +44,27 @@ pub(super) struct Mass {
 }
 
 impl Network {
-    pub fn new(vocabulary: &Vocabulary, rows: &[Row]) -> Self {
+    /// `exact`: movements follow one another without standing still between them, unless the body rests.
+    pub fn new(vocabulary: &Vocabulary, rows: &[Row], exact: bool) -> Self {
         let n = vocabulary.primitives().len();
         let mut starts = vec![0];
         let mut entry = Vec::new();
+        let mut leave = Vec::new();
         for row in rows {
             let count = rows.iter().filter(|r| r.primitive == row.primitive).count() as f64;
-            let near = |p: f64| if row.cyclic { 1.0 } else { (-p / ENTRY).exp() };
-            let sum: f64 = row.progress.iter().map(|&p| near(p)).sum();
+            let still = |k: usize| exact && row.stands(k);
+            let entry_within = if exact { ENTRY_EXACT } else { ENTRY };
+            let near = |k: usize| match row.cyclic {
+                true => 1.0,
+                false if still(k) => 0.0,
+                false => (-row.progress[k] / entry_within).exp(),
+            };
+            let moments = 0..row.progress.len();
+            let sum: f64 = moments.clone().map(near).sum();
             let even = 1.0 / row.progress.len() as f64;
-            let share = |&p: &f64| ((1.0 - ANYWHERE) * near(p) / sum + ANYWHERE * even) / count;
-            entry.extend(row.progress.iter().map(share));
+            let share = |k: usize| ((1.0 - ANYWHERE) * near(k) / sum + ANYWHERE * even) / count;
+            entry.extend(moments.clone().map(share));
+            leave.extend(moments.map(|k| if still(k) { ENDED } else { LEAVE }));
             starts.push(entry.len());
         }
         let transitions = vocabulary.transitions();
@@ -57,9 +72,16 @@ impl Network {
         Self {
             starts,
             entry,
+            leave,
             follow: pairs.map(|(a, b)| transitions.probability(a, b)).collect(),
             primitives: n,
         }
+    }
+
+    /// Chances that states are left within `secs`.
+    fn leaving(&self, secs: f64) -> Vec<f64> {
+        let chance = |rate: &f64| 1.0 - (-rate * secs).exp();
+        self.leave.iter().map(chance).collect()
     }
 
     /// What is believed before anything was seen.
@@ -83,7 +105,8 @@ impl Network {
     /// Mass after `secs`, before anything is seen.
     pub fn forward(&self, rows: &[Row], kernels: &[Kernel], mass: &Mass, secs: f64) -> Mass {
         let chance = |rate: f64| 1.0 - (-rate * secs).exp();
-        let (leave, begin, change) = (chance(LEAVE), chance(BEGIN), chance(CHANGE));
+        let (begin, change) = (chance(BEGIN), chance(CHANGE));
+        let leaving = self.leaving(secs);
         let n = self.primitives;
         let mut states = vec![0.0; mass.states.len()];
         let mut ended = vec![0.0; n];
@@ -91,7 +114,8 @@ impl Network {
             let own = self.starts[r]..self.starts[r + 1];
             let next = &mut states[own.clone()];
             let mut out = kernels[r].advance(row.cyclic, &mass.states[own], next);
-            for m in next.iter_mut() {
+            let leaving = &leaving[self.starts[r]..self.starts[r + 1]];
+            for (m, leave) in next.iter_mut().zip(leaving) {
                 out += leave * *m;
                 *m *= 1.0 - leave;
             }
@@ -122,7 +146,8 @@ impl Network {
     /// included).
     pub fn backward(&self, rows: &[Row], kernels: &[Kernel], worth: &Mass, secs: f64) -> Mass {
         let chance = |rate: f64| 1.0 - (-rate * secs).exp();
-        let (leave, begin, change) = (chance(LEAVE), chance(BEGIN), chance(CHANGE));
+        let (begin, change) = (chance(BEGIN), chance(CHANGE));
+        let leaving = self.leaving(secs);
         let n = self.primitives;
         let mut entered = vec![0.0; n];
         for (r, row) in rows.iter().enumerate() {
@@ -142,7 +167,11 @@ impl Network {
             let own = self.starts[r]..self.starts[r + 1];
             let end = ended[row.primitive];
             let before = &mut states[own.clone()];
-            kernels[r].retreat(row.cyclic, &worth.states[own], (end, leave), before);
+            let pairs = worth.states[own.clone()].iter().zip(&leaving[own]);
+            let kept: Vec<f64> = pairs
+                .map(|(w, leave)| (1.0 - leave) * w + leave * end)
+                .collect();
+            kernels[r].retreat(row.cyclic, &kept, end, before);
         }
         let begun = entered.iter().sum::<f64>() / n as f64;
         let from = |same: f64, other: f64| {
@@ -157,12 +186,8 @@ impl Network {
 }
 
 impl Mass {
-    /// Likelihoods from their logarithms, up to a factor that all share: those of the states times `factor`.
-    pub fn likelihood(logs: &[f64], factor: f64, rest: f64, none: f64) -> Self {
-        let most = logs
-            .iter()
-            .map(|l| factor * l)
-            .fold(rest.max(none), f64::max);
+    /// Likelihoods from their logarithms, up to the factor `exp(-most)`: those of the states times `factor`.
+    pub fn likelihood(logs: &[f64], factor: f64, rest: f64, none: f64, most: f64) -> Self {
         Self {
             states: logs.iter().map(|l| (factor * l - most).exp()).collect(),
             rest: (rest - most).exp(),
@@ -170,18 +195,37 @@ impl Mass {
         }
     }
 
-    /// Multiplies each by another, and makes the sum one; where no mass is left, what was believed before stays.
-    pub fn weigh(&mut self, by: &Self) {
-        let pairs = self.states.iter().zip(&by.states);
-        let (rest, none) = (self.rest * by.rest, self.none * by.none);
-        let sum = pairs.map(|(m, w)| m * w).sum::<f64>() + rest + none;
-        if sum <= 0.0 {
-            return;
+    /// Each times the same.
+    pub fn times(&self, factor: f64) -> Self {
+        Self {
+            states: self.states.iter().map(|m| factor * m).collect(),
+            rest: factor * self.rest,
+            none: factor * self.none,
         }
+    }
+
+    /// The sum of two.
+    pub fn plus(mut self, other: &Self) -> Self {
+        for (m, o) in self.states.iter_mut().zip(&other.states) {
+            *m += o;
+        }
+        self.rest += other.rest;
+        self.none += other.none;
+        self
+    }
+
+    /// The sum of products with another.
+    pub fn dot(&self, by: &Self) -> f64 {
+        let pairs = self.states.iter().zip(&by.states);
+        pairs.map(|(m, w)| m * w).sum::<f64>() + self.rest * by.rest + self.none * by.none
+    }
+
+    /// Multiplies each by another and divides it by `sum`.
+    pub fn weigh(&mut self, by: &Self, sum: f64) {
         for (m, w) in self.states.iter_mut().zip(&by.states) {
             *m *= w / sum;
         }
-        self.rest = rest / sum;
-        self.none = none / sum;
+        self.rest *= by.rest / sum;
+        self.none *= by.none / sum;
     }
 }
