@@ -277,7 +277,12 @@ mod tests {
                     ..Card::default()
                 }],
             },
-            ..Page::default()
+            sections: vec![Section {
+                title: "<!-- primitives".into(),
+                cards: 0..1,
+                ..Section::default()
+            }],
+            summary: Vec::new(),
         }
     }
 

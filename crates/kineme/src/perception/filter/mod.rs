@@ -9,6 +9,7 @@ mod learned;
 mod manner;
 mod model;
 mod noise;
+mod patterns;
 mod place;
 mod recogniser;
 mod route;

@@ -2,10 +2,10 @@
 
 use super::emission::Emission;
 use super::evidence::{Evidence, evidence};
-use super::exact::Exact;
 use super::features::{Feature, Moment};
 use super::learned::{Learned, NAME, classes, learn, scores};
 use super::model::Model;
+use super::patterns::Patterns;
 use super::route::Routes;
 use super::sight::Sight;
 use super::stream::Stream;
@@ -67,8 +67,7 @@ pub struct Filter<'v> {
     pub(super) stream: Model,
     /// Where the rows of clips lead.
     routes: Option<Routes>,
-    pub(super) displacements: Emission,
-    pub(super) exact: Option<Exact>,
+    pub(super) patterns: Patterns,
     pub(super) network: Network,
     /// The same where movements are carried out exactly.
     pub(super) exact_network: Network,
@@ -100,9 +99,8 @@ impl<'v> Filter<'v> {
         let stream = Model::new(vocabulary, &settings, false)?;
         let kept = vocabulary.calibration(NAME).and_then(Learned::of);
         Ok(Self {
-            displacements: stream.without(&stream.layout.still())?,
             routes: Routes::new(vocabulary, &clips.rows)?,
-            exact: stream.exact(&[])?,
+            patterns: Patterns::new(&stream)?,
             network: Network::new(vocabulary, &stream.rows, false),
             exact_network: Network::new(vocabulary, &stream.rows, true),
             learned: kept.unwrap_or_else(|| Learned::usual(primitives)),

@@ -1,11 +1,12 @@
 //! The filter at work on a stream.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
-use super::emission::{Emission, Fit};
-use super::exact::Exact;
+use super::emission::Fit;
 use super::features::{Feature, Recent};
 use super::manner::{Belief, Kernels};
+use super::patterns::Known;
 use super::place::{Spread, place};
 use super::recogniser::Filter;
 use super::rows::Row;
@@ -15,8 +16,6 @@ use crate::error::Result;
 use crate::perception::parts::Guard;
 use crate::primitive::{Listener, Observation, Observations, Posterior, Reading};
 
-/// Emissions kept for patterns of unknown numbers that come back.
-const PATTERNS: usize = 8;
 /// Displacements count so much more at rest, where a body stays within half of what people differ by in movement.
 const STILL: f64 = 4.0;
 /// A longer time between two looks is taken for so much, seconds.
@@ -30,7 +29,8 @@ pub(super) struct Stream<'a> {
     guard: Guard,
     sight: Sight<'a>,
     recent: Recent,
-    patterns: Patterns<'a>,
+    /// What postures are compared by as long as the same numbers are unknown.
+    known: Option<Arc<Known>>,
     kernels: Option<Kernels>,
     /// States of a body that stands still.
     still: Vec<usize>,
@@ -56,52 +56,6 @@ struct Look {
     pose: Vec<f64>,
 }
 
-/// The emission for what is known, for displacements alone, and of the manifold itself.
-struct Known {
-    all: Emission,
-    displacements: Emission,
-    exact: Option<Exact>,
-}
-
-struct Patterns<'a> {
-    filter: &'a Filter<'a>,
-    made: VecDeque<Known>,
-}
-
-impl Patterns<'_> {
-    /// The emissions when these numbers are unknown.
-    fn of(&mut self, unknown: &[bool]) -> Result<(&Emission, &Emission, Option<&Exact>)> {
-        if !unknown.contains(&true) {
-            let Filter {
-                stream,
-                displacements,
-                exact,
-                ..
-            } = self.filter;
-            return Ok((&stream.emission, displacements, exact.as_ref()));
-        }
-        let found = self.made.iter().position(|p| p.all.unknown == unknown);
-        let at = match found {
-            Some(at) => at,
-            None => {
-                let model = &self.filter.stream;
-                let still = model.layout.still();
-                let hidden: Vec<bool> = still.iter().zip(unknown).map(|(s, u)| *s || *u).collect();
-                let known = Known {
-                    all: model.without(unknown)?,
-                    displacements: model.without(&hidden)?,
-                    exact: model.exact(unknown)?,
-                };
-                self.made.truncate(PATTERNS - 1);
-                self.made.push_front(known);
-                0
-            }
-        };
-        let known = &self.made[at];
-        Ok((&known.all, &known.displacements, known.exact.as_ref()))
-    }
-}
-
 impl<'a> Stream<'a> {
     /// A filter that answers with so much hindsight.
     pub fn new(filter: &'a Filter<'a>, lag_secs: f64) -> Self {
@@ -110,13 +64,10 @@ impl<'a> Stream<'a> {
             guard: Guard::default(),
             sight: Sight::new(&model.layout, &model.bounds),
             recent: Recent::default(),
-            patterns: Patterns {
-                filter,
-                made: VecDeque::new(),
-            },
+            known: None,
             kernels: None,
             still: still(&model.rows, &filter.network.starts),
-            belief: Belief::prior(filter.network.prior(&model.rows), filter.exact.is_some()),
+            belief: Belief::prior(filter.network.prior(&model.rows), filter.patterns.exact()),
             looked: None,
             fit: Fit::default(),
             exact: Vec::new(),
@@ -186,7 +137,19 @@ impl<'a> Stream<'a> {
 
     /// Takes a feature and believes what it says.
     fn look(&mut self, feature: &Feature, secs: f64, dt: f64) -> Result<Look> {
-        let (all, displacements, exact) = self.patterns.of(&feature.unknown)?;
+        let known = match self.known.take() {
+            Some(known) if known.all.unknown == feature.unknown => known,
+            _ => self
+                .filter
+                .patterns
+                .of(&self.filter.stream, &feature.unknown)?,
+        };
+        self.known = Some(Arc::clone(&known));
+        let Known {
+            all,
+            displacements,
+            exact,
+        } = &*known;
         all.fit(feature, &mut self.fit);
         let rows = &self.filter.stream.rows;
         if self.looked.is_some() {
@@ -212,7 +175,11 @@ impl<'a> Stream<'a> {
             let standing = log_mean_exp(logs) - dt * exact.moving(feature);
             exactly = Some((self.exact.as_slice(), standing));
         }
-        let likelihood = likelihood(&self.fit.states, exactly, dt, rest, none);
+        let mut likelihood = likelihood(&self.fit.states, exactly, dt, rest, none);
+        if likelihood.exact.is_none() && self.belief.exact.is_some() {
+            // What is known does not tell the manners apart.
+            likelihood.exact = Some(likelihood.alike.clone());
+        }
         self.belief.weigh(&likelihood);
         Ok(Look {
             secs,
@@ -342,10 +309,15 @@ impl Filter<'_> {
                 primitives[row.primitive] += m - resting;
             }
         }
+        // Sums of many probabilities are one but for rounding.
+        let all = primitives.iter().sum::<f64>() + rest + mass.none;
+        for p in &mut primitives {
+            *p /= all;
+        }
         let posterior = Posterior {
             primitives,
-            rest,
-            none: mass.none,
+            rest: rest / all,
+            none: mass.none / all,
         };
         let place = match (posterior.leading().filter(|(_, p)| *p > 0.0), pose) {
             (Some((leading, _)), Some(pose)) => {
