@@ -193,11 +193,12 @@ fn seconds(time: Duration) -> String {
 const TABLES: &str = "<!-- tables: cargo xtask repro -->";
 const TIMES: &str = "<!-- tables: cargo xtask bench -->";
 /// Documents with tables, and the examples of `kineme-paper` that print them.
-const REPRODUCED: [(&str, &str); 4] = [
+const REPRODUCED: [(&str, &str); 5] = [
     ("docs/derivation.md", "derivation_table"),
     ("docs/model.md", "model_table"),
     ("docs/perception.md", "recognition_table"),
     ("docs/control.md", "control_table"),
+    ("docs/table1.md", "table1_table"),
 ];
 
 /// Computes the tables of the documents again and puts them below their marks.

@@ -23,7 +23,7 @@ cargo xtask COMMAND: what those who work on kineme run
                              (the table in ARCHITECTURE.md), length of files, paths named in documents,
                              the code map, the CHANGELOG's heading, paths of somebody's machine
   demo [-- ARGS]             kineme demo ARGS, in release, with physics
-  repro [CORPUS]             the tables of docs/derivation.md, model.md, perception.md and control.md, computed
+  repro [CORPUS]             the tables of docs/derivation.md, model.md, perception.md, control.md and table1.md, computed
                              again from a corpus of labelled motion (default: KINEME_DATA/mocap, else ../shared/data/mocap)
   bench                      time control on this machine, for docs/benchmarks.md
   fuzz [TARGET] [SECONDS]    run one fuzz target, or each in turn, for so long (60 s); wants cargo-fuzz
