@@ -6,7 +6,8 @@ use super::clip::{Altered, Clip, animations};
 use super::measures::Measure;
 use super::mode::Mode;
 use super::movements::{MovementSettings, movements, ready_made};
-use super::run::{FRAME, Judge, Row, SETS};
+use super::row::Row;
+use super::run::{FRAME, Judge, SETS};
 use super::written::{PUBLISHED, percent, way};
 use crate::sets::Result;
 

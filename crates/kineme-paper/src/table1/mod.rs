@@ -4,6 +4,7 @@
 //! The sets are made by [`movements`] (what simulated Ares did), [`animations`] and [`recorded`]; [`Mode`] says how is
 //! decided, [`Tally`] counts, [`measures`] are what is read off the counts. [`table1`] runs all of it.
 
+mod beside;
 mod captured;
 mod clip;
 mod disturbed;
@@ -11,6 +12,7 @@ mod embedded;
 mod measures;
 mod mode;
 mod movements;
+mod row;
 mod run;
 mod tally;
 mod written;
@@ -23,5 +25,6 @@ pub use embedded::{embedded, table};
 pub use measures::{MEASURES, Measure, garwood, measures};
 pub use mode::{Decisions, Mode};
 pub use movements::{MovementSettings, RATE_HZ, drawn, movements, perform, plan, ready_made};
-pub use run::{Row, Table, TableSettings, Timing, boxer, table1};
+pub use row::{Row, Table, Timing};
+pub use run::{TableSettings, boxer, table1};
 pub use tally::{Counts, Tally};

@@ -6,7 +6,7 @@ use kineme::evaluation::Estimate;
 
 use super::measures::{MEASURES, Measure};
 use super::mode::Mode;
-use super::run::{Row, Table};
+use super::row::{Row, Table};
 use crate::sets::Result;
 
 /// What is asked of the filter in each set: accuracy, in hundred; the recall of the first; alarms an hour of the third.

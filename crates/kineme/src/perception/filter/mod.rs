@@ -6,6 +6,7 @@ mod evidence;
 mod exact;
 mod features;
 mod learned;
+mod logistic;
 mod manner;
 mod model;
 mod noise;
