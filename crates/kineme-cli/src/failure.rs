@@ -104,7 +104,7 @@ pub fn print(bytes: &[u8]) -> Result<(), Failure> {
     offer(bytes).map(|_| ())
 }
 
-/// As [`print`], and tells whether anybody reads still: streams end when nobody does.
+/// As [`print()`], and tells whether anybody reads still: streams end when nobody does.
 pub fn offer(bytes: &[u8]) -> Result<bool, Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {

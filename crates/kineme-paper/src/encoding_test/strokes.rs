@@ -57,7 +57,7 @@ pub fn coordinate(paths: &EffectorPaths, set: usize) -> Vec<f64> {
 }
 
 /// The strokes of a coordinate: from turning point to turning point, first and last index and whether it rises. A
-/// turning point is where the coordinate goes back by [`TURN`] at least.
+/// turning point is where the coordinate goes back by `TURN` at least.
 pub fn strokes(values: &[f64]) -> Vec<(usize, usize, bool)> {
     let Some(&first) = values.first() else {
         return Vec::new();
