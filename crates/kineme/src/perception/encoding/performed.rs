@@ -99,10 +99,10 @@ impl EffectorPaths {
         lengths.iter().map(moves).collect()
     }
 
-    /// The frames, two at least where there are, in which an effector (an index) performs: from the first to the last one at which it is farther from
-    /// where it hung, before and after, than 0.7 of the greatest such distance. What begins (ends) with a hand that does
-    /// not hang, 0.45 of the reach below the shoulders, begins (ends) with the movement. All frames where nothing was
-    /// seen of it.
+    /// The frames, two at least where there are, in which an effector (an index) performs: from the first to the last
+    /// one at which it is farther from where it hung, before and after, than 0.7 of the greatest such distance. What
+    /// begins (ends) with a hand that does not hang, 0.45 of the reach below the shoulders, begins (ends) with the
+    /// movement. All frames where nothing was seen of it.
     pub fn performed(&self, effector: usize) -> Range<usize> {
         let all = 0..self.frames();
         let path = self.smoothed(effector);

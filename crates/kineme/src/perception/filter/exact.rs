@@ -32,9 +32,8 @@ const WORTH: f64 = 0.5;
 pub(super) struct Tangents {
     /// Vectors of each state.
     pub count: usize,
-    /// states x count x dims; a state none of whose vectors is known (its primitive's parameters have no meaning) has
-    /// not a number first.
-    pub vectors: Vec<f64>,
+    /// Of each state, count x dims; none where its primitive's parameters have no meaning.
+    pub vectors: Vec<Option<Vec<f64>>>,
 }
 
 /// The densities of moments around the rows' moments, against that of movement anywhere.
@@ -51,8 +50,8 @@ pub(super) struct Exact {
     /// Of each state: its place, and `count` vectors whose products with a residual take their squares off its length;
     /// states x (1 + count) x directions.
     states: Vec<f64>,
-    /// Logarithm of each state's determinant; not a number for states that are not compared.
-    log_dets: Vec<f64>,
+    /// Logarithm of each state's determinant; none of states that are not compared.
+    log_dets: Vec<Option<f64>>,
     count: usize,
 }
 
@@ -101,11 +100,8 @@ impl Exact {
             mean,
             basis,
         };
-        for (place, vectors) in places
-            .column_iter()
-            .zip(tangents.vectors.chunks_exact(tangents.count * dims))
-        {
-            exact.push(place.as_slice(), vectors, dims)?;
+        for (place, vectors) in places.column_iter().zip(&tangents.vectors) {
+            exact.push(place.as_slice(), vectors.as_deref(), dims)?;
         }
         Ok(Some(exact))
     }
@@ -116,15 +112,15 @@ impl Exact {
         0.5 * TRUST_PER_SEC * squares.sum::<f64>() / (SWAY_M * SWAY_M)
     }
 
-    fn push(&mut self, place: &[f64], vectors: &[f64], dims: usize) -> Result<()> {
+    fn push(&mut self, place: &[f64], vectors: Option<&[f64]>, dims: usize) -> Result<()> {
         let directions = self.basis.nrows();
         self.states.extend_from_slice(place);
-        if vectors[0].is_nan() {
+        let Some(vectors) = vectors else {
             self.states
                 .extend(std::iter::repeat_n(0.0, self.count * directions));
-            self.log_dets.push(f64::NAN);
+            self.log_dets.push(None);
             return Ok(());
-        }
+        };
         let rows: Vec<_> = vectors
             .chunks_exact(dims)
             .map(|v| {
@@ -142,8 +138,8 @@ impl Exact {
             .solve_lower_triangular(&w)
             .ok_or_else(|| Error::invalid("tangents that are no numbers"))?;
         self.states.extend_from_slice(u.transpose().as_slice());
-        self.log_dets
-            .push(2.0 * l.diagonal().iter().map(|d| d.ln()).sum::<f64>());
+        let log_det = 2.0 * l.diagonal().iter().map(|d| d.ln()).sum::<f64>();
+        self.log_dets.push(Some(log_det));
         Ok(())
     }
 
@@ -164,26 +160,23 @@ impl Exact {
         let (d, size) = (z.len(), (1 + self.count) * z.len());
         let mut residual = vec![0.0; d];
         out.clear();
-        out.extend(
-            wide.iter()
-                .zip(&self.log_dets)
-                .enumerate()
-                .map(|(s, (w, log_det))| {
-                    if *w < best - WORTH * usual || log_det.is_nan() {
-                        return f64::NEG_INFINITY;
-                    }
-                    let state = &self.states[s * size..(s + 1) * size];
-                    let mut squared = outside;
-                    for ((r, x), y) in residual.iter_mut().zip(z.iter()).zip(&state[..d]) {
-                        *r = x - y;
-                        squared += *r * *r;
-                    }
-                    for u in state[d..].chunks_exact(d) {
-                        let along: f64 = u.iter().zip(&residual).map(|(a, b)| a * b).sum();
-                        squared -= along * along;
-                    }
-                    0.5 * TRUST_PER_SEC * (broad - squared - log_det)
-                }),
-        );
+        let pairs = wide.iter().zip(&self.log_dets).enumerate();
+        out.extend(pairs.map(|(s, (w, log_det))| {
+            let near = *w >= best - WORTH * usual;
+            let Some(log_det) = log_det.filter(|_| near) else {
+                return f64::NEG_INFINITY;
+            };
+            let state = &self.states[s * size..(s + 1) * size];
+            let mut squared = outside;
+            for ((r, x), y) in residual.iter_mut().zip(z.iter()).zip(&state[..d]) {
+                *r = x - y;
+                squared += *r * *r;
+            }
+            for u in state[d..].chunks_exact(d) {
+                let along: f64 = u.iter().zip(&residual).map(|(a, b)| a * b).sum();
+                squared -= along * along;
+            }
+            0.5 * TRUST_PER_SEC * (broad - squared - log_det)
+        }));
     }
 }

@@ -29,8 +29,6 @@ pub(super) struct Model {
     /// Features of all rows' moments, one after the other.
     features: Vec<f64>,
     parts: Vec<Part>,
-    /// For complete observations.
-    pub emission: Emission,
     /// What varies around the rows' moments, where that is known.
     tangents: Option<Tangents>,
 }
@@ -74,7 +72,6 @@ impl Model {
             false => tangents(vocabulary, &rows, &features, dims)?,
         };
         Ok(Self {
-            emission: Emission::new(&parts, &features, dims, &[])?,
             tangents,
             layout,
             rows,
@@ -85,7 +82,7 @@ impl Model {
         })
     }
 
-    /// The same without the numbers that are unknown: the Gaussian's marginal.
+    /// How well moments fit the rows without the numbers that are unknown: the Gaussian's marginal.
     pub fn without(&self, unknown: &[bool]) -> Result<Emission> {
         Emission::new(&self.parts, &self.features, self.layout.dims(), unknown)
     }

@@ -65,6 +65,8 @@ pub struct Filter<'v> {
     /// What whole clips are compared with, and what streams are.
     pub(super) clips: Model,
     pub(super) stream: Model,
+    /// What complete clips are compared by.
+    complete: Emission,
     /// Where the rows of clips lead.
     routes: Option<Routes>,
     pub(super) patterns: Patterns,
@@ -99,6 +101,7 @@ impl<'v> Filter<'v> {
         let stream = Model::new(vocabulary, &settings, false)?;
         let kept = vocabulary.calibration(NAME).and_then(Learned::of);
         Ok(Self {
+            complete: clips.without(&[])?,
             routes: Routes::new(vocabulary, &clips.rows)?,
             patterns: Patterns::new(&stream)?,
             network: Network::new(vocabulary, &stream.rows, false),
@@ -137,7 +140,7 @@ impl<'v> Filter<'v> {
                 marginal = model.without(&unknown)?;
                 &marginal
             }
-            false => &model.emission,
+            false => &self.complete,
         };
         let moments = features.iter().map(|(f, dt)| (f, *dt));
         let mut evidence = evidence(&model.rows, emission, moments);

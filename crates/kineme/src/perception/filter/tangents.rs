@@ -41,17 +41,16 @@ pub(super) fn tangents(
     for row in rows {
         starts.push(starts[starts.len() - 1] + row.phases.len());
     }
-    let of = |r: usize| -> Result<Vec<f64>> {
+    let of = |r: usize| -> Result<Vec<Option<Vec<f64>>>> {
         let row = &rows[r];
         let moments = row.phases.len();
-        let mut own = vec![0.0; moments * count * dims];
         if !known(row) {
-            own.fill(f64::NAN);
-            return Ok(own);
+            return Ok(vec![None; moments]);
         }
+        let mut own = vec![vec![0.0; count * dims]; moments];
         let at = |k: usize| &features[(starts[r] + k) * dims..(starts[r] + k + 1) * dims];
         let beside = beside(rows, r)?;
-        for (k, vectors) in own.chunks_exact_mut(count * dims).enumerate() {
+        for (k, vectors) in own.iter_mut().enumerate() {
             let (before, after) = match row.cyclic {
                 true => ((k + moments - 1) % moments, (k + 1) % moments),
                 false => (k.saturating_sub(1), (k + 1).min(moments - 1)),
@@ -72,9 +71,9 @@ pub(super) fn tangents(
                 }
             }
         }
-        Ok(own)
+        Ok(own.into_iter().map(Some).collect())
     };
-    let all: Vec<Vec<f64>> = (0..rows.len())
+    let all: Vec<Vec<Option<Vec<f64>>>> = (0..rows.len())
         .into_par_iter()
         .map(of)
         .collect::<Result<_>>()?;
