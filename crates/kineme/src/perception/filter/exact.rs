@@ -14,7 +14,7 @@ use crate::math::eigen::principal;
 
 /// Standard deviation across the manifold, metres: sensors, and what a controller lags. Postures alone are compared: who
 /// goes from one movement into the next has no displacement of either, and the pace along a row says as much.
-const ACROSS_M: f64 = 0.004;
+const ACROSS_M: f64 = 0.003;
 /// Who stands still is displaced by so much in a window, metres (radians of the turn): sensors, and a body's sway.
 const SWAY_M: f64 = 0.005;
 /// How much a squared distance counts, a second (see [`super::emission::Part`]).
@@ -23,9 +23,10 @@ const TRUST_PER_SEC: f64 = 12.0;
 const BROAD: f64 = 10.0;
 /// Directions in which the rows vary by less, in deviations, are all alike.
 const ALIKE: f64 = 0.15;
-/// A moment is worth comparing exactly if the wide measure has it this near to the best, in shares of what a moment
-/// usually costs.
-const WORTH: f64 = 0.5;
+/// States are first compared in so many directions, and in all where that leaves them within so much of the best,
+/// logarithms a second.
+const LEADING: usize = 8;
+const FAR_PER_SEC: f64 = 600.0;
 
 /// What may vary around the moments of the rows: vectors in the features' numbers, each as long as one deviation.
 #[derive(Debug, Clone)]
@@ -47,12 +48,22 @@ pub(super) struct Exact {
     basis: DMatrix<f64>,
     /// Variances of the rows along them.
     variances: DVector<f64>,
+    whole: Around,
+    /// The same in the first few directions, those in which rows vary most: no state is nearer in all than in these.
+    leading: Around,
+    /// Logarithm of each state's determinant; none of states that are not compared.
+    log_dets: Vec<Option<f64>>,
+}
+
+/// Neighbourhoods of states: spheres that are long along the tangents.
+#[derive(Debug, Clone)]
+struct Around {
+    directions: usize,
+    /// Tangents of each state.
+    count: usize,
     /// Of each state: its place, and `count` vectors whose products with a residual take their squares off its length;
     /// states x (1 + count) x directions.
     states: Vec<f64>,
-    /// Logarithm of each state's determinant; none of states that are not compared.
-    log_dets: Vec<Option<f64>>,
-    count: usize,
 }
 
 impl Exact {
@@ -91,10 +102,10 @@ impl Exact {
         let basis = directions.rows(0, variances.len()).into_owned();
         let places = &basis * centred;
         let mut exact = Self {
-            states: Vec::with_capacity(count * (1 + tangents.count) * variances.len()),
+            whole: Around::of(variances.len(), tangents.count),
+            leading: Around::of(variances.len().min(LEADING), tangents.count),
             variances: DVector::from_vec(variances),
             log_dets: Vec::with_capacity(count),
-            count: tangents.count,
             displaced: (0..dims).filter(|&i| !still[i] && !hidden(i)).collect(),
             known,
             mean,
@@ -113,39 +124,22 @@ impl Exact {
     }
 
     fn push(&mut self, place: &[f64], vectors: Option<&[f64]>, dims: usize) -> Result<()> {
-        let directions = self.basis.nrows();
-        self.states.extend_from_slice(place);
-        let Some(vectors) = vectors else {
-            self.states
-                .extend(std::iter::repeat_n(0.0, self.count * directions));
-            self.log_dets.push(None);
-            return Ok(());
+        let scaled = |v: &[f64]| {
+            let own = self.known.iter().map(|&i| v[i] / ACROSS_M);
+            (&self.basis * DVector::from_iterator(self.known.len(), own)).transpose()
         };
-        let rows: Vec<_> = vectors
-            .chunks_exact(dims)
-            .map(|v| {
-                let own = self.known.iter().map(|&i| v[i] / ACROSS_M);
-                (&self.basis * DVector::from_iterator(self.known.len(), own)).transpose()
-            })
-            .collect();
-        let w = DMatrix::from_rows(&rows);
-        let inner = DMatrix::identity(self.count, self.count) + &w * w.transpose();
-        let factor = inner
-            .cholesky()
-            .ok_or_else(|| Error::invalid("tangents that are no numbers"))?;
-        let l = factor.l();
-        let u = l
-            .solve_lower_triangular(&w)
-            .ok_or_else(|| Error::invalid("tangents that are no numbers"))?;
-        self.states.extend_from_slice(u.transpose().as_slice());
-        let log_det = 2.0 * l.diagonal().iter().map(|d| d.ln()).sum::<f64>();
-        self.log_dets.push(Some(log_det));
+        let along = vectors.map(|v| {
+            let rows: Vec<_> = v.chunks_exact(dims).map(scaled).collect();
+            DMatrix::from_rows(&rows)
+        });
+        self.leading.push(place, along.as_ref())?;
+        self.log_dets.push(self.whole.push(place, along.as_ref())?);
         Ok(())
     }
 
-    /// Logarithms of the densities a second around each state, less that of movement anywhere; minus infinity where
-    /// the wide measure (`wide`, of which `usual` is what a moment usually costs) is not near its best.
-    pub fn fit(&self, feature: &Feature, wide: &[f64], usual: f64, out: &mut Vec<f64>) {
+    /// Logarithms of the densities a second around each state, less that of movement anywhere. Of states that are far
+    /// behind the best, bounds from above: those are told by the leading directions.
+    pub fn fit(&self, feature: &Feature, out: &mut Vec<f64>) {
         let values = self.known.iter().map(|&i| feature.values[i] / ACROSS_M);
         let off = DVector::from_iterator(self.known.len(), values) - &self.mean;
         let z = &self.basis * &off;
@@ -156,27 +150,70 @@ impl Exact {
         for (x, v) in z.iter().zip(self.variances.iter()) {
             broad += x * x / (v + beyond) + (v + beyond).ln();
         }
-        let best = wide.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let (d, size) = (z.len(), (1 + self.count) * z.len());
-        let mut residual = vec![0.0; d];
+        let z = z.as_slice();
+        let leading = z.len().min(LEADING);
+        let log = |squared: f64, log_det: f64| {
+            0.5 * TRUST_PER_SEC * (broad - outside - squared - log_det)
+        };
+        let bound = |(s, log_det): (usize, &Option<f64>)| match log_det {
+            Some(d) => log(self.leading.squared(&z[..leading], s), *d),
+            None => f64::NEG_INFINITY,
+        };
         out.clear();
-        let pairs = wide.iter().zip(&self.log_dets).enumerate();
-        out.extend(pairs.map(|(s, (w, log_det))| {
-            let near = *w >= best - WORTH * usual;
-            let Some(log_det) = log_det.filter(|_| near) else {
-                return f64::NEG_INFINITY;
-            };
-            let state = &self.states[s * size..(s + 1) * size];
-            let mut squared = outside;
-            for ((r, x), y) in residual.iter_mut().zip(z.iter()).zip(&state[..d]) {
-                *r = x - y;
-                squared += *r * *r;
+        out.extend(self.log_dets.iter().enumerate().map(bound));
+        let whole = |s: usize| match self.log_dets[s] {
+            Some(d) => log(self.whole.squared(z, s), d),
+            None => f64::NEG_INFINITY,
+        };
+        let likely = (0..out.len()).max_by(|&a, &b| out[a].total_cmp(&out[b]));
+        let mut best = likely.map_or(f64::NEG_INFINITY, whole);
+        for (s, own) in out.iter_mut().enumerate() {
+            if *own > best - FAR_PER_SEC {
+                *own = whole(s);
+                best = best.max(*own);
             }
-            for u in state[d..].chunks_exact(d) {
-                let along: f64 = u.iter().zip(&residual).map(|(a, b)| a * b).sum();
-                squared -= along * along;
-            }
-            0.5 * TRUST_PER_SEC * (broad - squared - log_det)
-        }));
+        }
+    }
+}
+
+impl Around {
+    fn of(directions: usize, count: usize) -> Self {
+        Self {
+            directions,
+            count,
+            states: Vec::new(),
+        }
+    }
+
+    /// Takes a state at a place, with vectors (count x directions) along which it is long; none: only its place.
+    /// Returns the logarithm of its determinant.
+    fn push(&mut self, place: &[f64], along: Option<&DMatrix<f64>>) -> Result<Option<f64>> {
+        self.states.extend_from_slice(&place[..self.directions]);
+        let Some(along) = along else {
+            let nothing = std::iter::repeat_n(0.0, self.count * self.directions);
+            self.states.extend(nothing);
+            return Ok(None);
+        };
+        let w = along.columns(0, self.directions);
+        let inner = DMatrix::identity(self.count, self.count) + w * w.transpose();
+        let none = || Error::invalid("tangents that are no numbers");
+        let l = inner.cholesky().ok_or_else(none)?.l();
+        let u = l.solve_lower_triangular(&w).ok_or_else(none)?;
+        self.states.extend_from_slice(u.transpose().as_slice());
+        Ok(Some(2.0 * l.diagonal().iter().map(|d| d.ln()).sum::<f64>()))
+    }
+
+    /// The squared distance of a point to a state.
+    fn squared(&self, point: &[f64], state: usize) -> f64 {
+        let (d, size) = (self.directions, (1 + self.count) * self.directions);
+        let (place, vectors) = self.states[state * size..(state + 1) * size].split_at(d);
+        let apart = |(x, y): (&f64, &f64)| (x - y) * (x - y);
+        let mut squared: f64 = point.iter().zip(place).map(apart).sum();
+        for u in vectors.chunks_exact(d) {
+            let residuals = point.iter().zip(place).zip(u);
+            let along: f64 = residuals.map(|((x, y), u)| (x - y) * u).sum();
+            squared -= along * along;
+        }
+        squared
     }
 }

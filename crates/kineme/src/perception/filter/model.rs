@@ -36,7 +36,7 @@ pub(super) struct Model {
 impl Model {
     pub fn new(vocabulary: &Vocabulary, settings: &FilterSettings, offset: bool) -> Result<Self> {
         let layout = Layout::of(vocabulary.body());
-        let rows = rows(vocabulary, settings.rows)?;
+        let rows = rows(vocabulary, settings.rows, !offset)?;
         let dims = layout.dims();
         let of = |row: &Row| {
             let path = row.path(vocabulary)?;

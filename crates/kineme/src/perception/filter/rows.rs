@@ -10,6 +10,9 @@ use crate::primitive::{Course, ParameterSource, Primitive, Sample, Travel, Vocab
 const RATE_HZ: f64 = 30.0;
 const FEWEST: usize = 12;
 const MOST: usize = 40;
+/// A manifold that bodies follow to the millimetre is sampled, and looked at, so many times as finely: in a thirtieth of
+/// a second a hand leaves the tangent by more.
+pub(super) const FINER: f64 = 2.0;
 /// The same for whole recordings of cycles, which last longer.
 const MOST_WHOLE: usize = 64;
 /// Seconds of standing still before and after a movement that is no cycle: as long as displacements look back.
@@ -110,9 +113,13 @@ impl Clock {
 ///
 /// Exemplars are rows as they are. Where a person named the parameters, or an effector's place is them, a grid of
 /// interpolated courses stands between: there the manifold is known. Principal coordinates of a few people span no grid
-/// worth believing, and on real people an exemplar itself is recognised by better than a blend.
-pub(super) fn rows(vocabulary: &Vocabulary, most: usize) -> Result<Vec<Row>> {
-    let of = |(i, p): (usize, &Primitive)| rows_of(i, p, most);
+/// worth believing, and on real people an exemplar itself is recognised by better than a blend. `finely`: the former
+/// are sampled for who follows them to the millimetre.
+pub(super) fn rows(vocabulary: &Vocabulary, most: usize, finely: bool) -> Result<Vec<Row>> {
+    let of = |(i, p): (usize, &Primitive)| {
+        let finer = if finely && manifold(p) { FINER } else { 1.0 };
+        rows_of(i, p, most, finer)
+    };
     let all: Vec<Vec<Row>> = vocabulary
         .primitives()
         .par_iter()
@@ -122,7 +129,7 @@ pub(super) fn rows(vocabulary: &Vocabulary, most: usize) -> Result<Vec<Row>> {
     Ok(all.into_iter().flatten().collect())
 }
 
-fn rows_of(index: usize, primitive: &Primitive, most: usize) -> Result<Vec<Row>> {
+fn rows_of(index: usize, primitive: &Primitive, most: usize, finer: f64) -> Result<Vec<Row>> {
     let n = primitive.exemplars().len();
     let taken = n.min(most.max(1));
     let mut rows: Vec<Row> = (0..taken)
@@ -134,7 +141,7 @@ fn rows_of(index: usize, primitive: &Primitive, most: usize) -> Result<Vec<Row>>
                 primitive,
                 Some(i),
                 primitive.point(i).to_vec(),
-                &path,
+                (&path, finer),
             )
         })
         .collect();
@@ -154,10 +161,17 @@ fn rows_of(index: usize, primitive: &Primitive, most: usize) -> Result<Vec<Row>>
         let outside = moved.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) > 1e-6;
         if rows.len() < most.max(taken) && !outside && !rows.iter().any(near) {
             let path = Path::Course(course);
-            rows.push(row(index, primitive, None, p, &path));
+            rows.push(row(index, primitive, None, p, (&path, finer)));
         }
     }
     Ok(rows)
+}
+
+/// Whether a primitive's parameters have a meaning, so that its executions span a manifold: principal coordinates of a
+/// few people do not.
+pub(super) fn manifold(primitive: &Primitive) -> bool {
+    let source = primitive.parameters().source();
+    !matches!(source, ParameterSource::Principal { .. })
 }
 
 /// How far apart the grid's points lie, of `m` parameters; `None` where there is no grid.
@@ -169,14 +183,10 @@ pub(super) fn spacing(m: usize) -> Option<f64> {
 /// Points of [0, 1]^m between the exemplars; none where parameters are principal coordinates.
 fn grid(primitive: &Primitive) -> Vec<Vec<f64>> {
     let m = primitive.parameters().dims();
-    let principal = matches!(
-        primitive.parameters().source(),
-        ParameterSource::Principal { .. }
-    );
     let Some(&count) = m.checked_sub(1).and_then(|m| GRID.get(m)) else {
         return Vec::new();
     };
-    if principal {
+    if !manifold(primitive) {
         return Vec::new();
     }
     let place = |mut at: usize| {
@@ -195,12 +205,13 @@ fn row(
     primitive: &Primitive,
     exemplar: Option<usize>,
     parameters: Vec<f64>,
-    path: &Path<'_>,
+    (path, finer): (&Path<'_>, f64),
 ) -> Row {
     let cyclic = primitive.is_cyclic();
     let clock = Clock::of(path, cyclic);
     let whole = clock.duration_secs();
-    let moments = ((whole * RATE_HZ).round() as usize).clamp(FEWEST, MOST);
+    let most = (MOST as f64 * finer) as usize;
+    let moments = ((whole * RATE_HZ * finer).round() as usize).clamp(FEWEST, most);
     // The last moment of a cycle is the first of the next.
     let step_secs = whole / (moments - usize::from(!cyclic)) as f64;
     let still = if cyclic {

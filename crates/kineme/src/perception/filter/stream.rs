@@ -9,7 +9,7 @@ use super::manner::{Belief, Kernels};
 use super::patterns::Known;
 use super::place::{Spread, place};
 use super::recogniser::Filter;
-use super::rows::Row;
+use super::rows::{FINER, Row};
 use super::sight::Sight;
 use super::track::Mass;
 use crate::error::Result;
@@ -120,7 +120,12 @@ impl<'a> Stream<'a> {
         let moment = self.sight.see(seen);
         let secs = seen.secs;
         self.recent.push(moment);
-        let tick = 1.0 / self.filter.settings.clock_hz;
+        let finer = if self.belief.exact.is_some() {
+            FINER
+        } else {
+            1.0
+        };
+        let tick = 1.0 / (self.filter.settings.clock_hz * finer);
         // A frame in time is looked at though clocks differ in their last digits.
         let due = self.looked.is_none_or(|l| secs - l >= 0.98 * tick);
         let (true, Some(now), Some(then)) = (due, self.recent.now(), self.recent.then()) else {
@@ -166,7 +171,7 @@ impl<'a> Stream<'a> {
         let none = dt * (self.fit.broad + self.filter.learned.unknown_per_sec);
         let mut exactly = None;
         if let Some(exact) = exact {
-            exact.fit(feature, &self.fit.states, all.usual_cost(), &mut self.exact);
+            exact.fit(feature, &mut self.exact);
             for log in &mut self.exact {
                 *log += self.fit.broad;
             }

@@ -4,9 +4,9 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::exact::Tangents;
-use super::rows::{Row, spacing};
+use super::rows::{Row, manifold, spacing};
 use crate::error::Result;
-use crate::primitive::{ParameterSource, Vocabulary};
+use crate::primitive::Vocabulary;
 
 /// Deviations: of phase in moments of the row, of parameters in halves of the grid's spacing. Within half a moment and
 /// half a spacing everything is alike probable (deviation 1/sqrt(3) of that), and a little more.
@@ -17,8 +17,8 @@ const BESIDE: f64 = 1.25;
 /// Ridge of the fit to the rows beside, in squared spacings.
 const RIDGE: f64 = 1e-3;
 
-/// The tangents of a vocabulary's rows, whose moments have these features (states x dims). `None` where no primitive's parameters have a meaning: the exemplars of people span no manifold
-/// that anybody would follow to the millimetre.
+/// The tangents of a vocabulary's rows, whose moments have these features (states x dims). `None` where no primitive's
+/// parameters have a meaning: the exemplars of people span no manifold that anybody would follow to the millimetre.
 ///
 /// # Errors
 /// When a fit to rows beside fails.
@@ -28,10 +28,7 @@ pub(super) fn tangents(
     features: &[f64],
     dims: usize,
 ) -> Result<Option<Tangents>> {
-    let known = |row: &Row| {
-        let parameters = vocabulary.primitives()[row.primitive].parameters();
-        !matches!(parameters.source(), ParameterSource::Principal { .. })
-    };
+    let known = |row: &Row| manifold(&vocabulary.primitives()[row.primitive]);
     if !rows.iter().any(known) {
         return Ok(None);
     }
