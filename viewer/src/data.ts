@@ -113,6 +113,8 @@ export interface Scene {
   bodies: Body[];
   takes: Take[];
   primitives: Card[];
+  /** The file of the primitives, where they may be changed; else empty. */
+  vocabulary: string;
 }
 
 /** The scene that a page holds: JSON, packed. */

@@ -77,6 +77,27 @@ export class Figure {
     return out.fromArray(this.points, 3 * this.body.centre).add(this.group.position);
   }
 
+  /** The place on the floor below the body's centre, as its postures have it. */
+  middle(): THREE.Vector3 {
+    return new THREE.Vector3().fromArray(this.points, 3 * this.body.centre).setZ(0);
+  }
+
+  /** Some of the places that a table's postures take up; each seen from below its own centre if the body is followed. */
+  static places({ centre, points }: Body, table: Float32Array, followed: boolean, most = 40): THREE.Vector3[] {
+    const rows = table.length / (3 * points);
+    const step = Math.max(1, Math.floor(rows / most));
+    const found: THREE.Vector3[] = [];
+    for (let row = 0; row < rows; row += step) {
+      const middle = new THREE.Vector3().fromArray(table, 3 * (row * points + centre)).setZ(0);
+      for (let i = 0; i < points; i++) {
+        const place = new THREE.Vector3().fromArray(table, 3 * (row * points + i));
+        if (followed) place.sub(middle);
+        if (Number.isFinite(place.x + place.y + place.z)) found.push(place);
+      }
+    }
+    return found;
+  }
+
   /** Draws the body between rows of a table of its postures. */
   take(table: Float32Array, rows: Weighed[]): void {
     blendPosture(table, this.body, this.order, rows, this.points);
