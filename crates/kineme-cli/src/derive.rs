@@ -214,7 +214,7 @@ fn read_marks(path: &Path) -> Result<Marks, Failure> {
         FormatError::new(
             &shown,
             Place::File,
-            e.to_string(),
+            kineme_formats::told(&e),
             "a readable table of marks",
         )
     })?;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use kineme::Motion;
 use kineme::derivation::{Derived, Segment};
 use kineme::math::statistics::median;
+use kineme_paper::figures::counted;
 use serde::Serialize;
 
 use crate::failure::Failure;
@@ -140,10 +141,11 @@ impl Findings<'_> {
         let grouped = derived.labels.iter().flatten().count();
         let segments = derived.segments.len();
         let mut text = format!(
-            "{segments} segments (median {:.2} s) in {} motions: {grouped} fall into {} groups, {} into none\n",
+            "{} (median {:.2} s) in {}: {grouped} in {}, {} in none\n",
+            counted(segments, "segment"),
             self.median_secs(0..segments),
-            self.motions.len(),
-            derived.groups.len(),
+            counted(self.motions.len(), "motion"),
+            counted(derived.groups.len(), "group"),
             segments - grouped
         );
         if !derived.groups.is_empty() {
@@ -245,11 +247,15 @@ impl Findings<'_> {
         let sweep = &derived.sweep;
         let noise = sweep.labels.iter().filter(|l| l.is_none()).count();
         format!(
-            "embedding: {} dimensions; residual variance with 1, 2, ...: {}\n\
-             sweep-and-prune beside it: {} groups, {noise} segments in none, width {:.3}, stability {:.2}\n",
-            derived.embedding.dimension,
+            "embedding: {}; residual variance with 1, 2, ...: {}\n\
+             sweep-and-prune beside it: {}, {} in none, width {:.3}, stability {:.2}\n",
+            counted(derived.embedding.dimension, "dimension"),
             shown.join(" "),
-            sweep.labels.iter().flatten().max().map_or(0, |m| m + 1),
+            counted(
+                sweep.labels.iter().flatten().max().map_or(0, |m| m + 1),
+                "group"
+            ),
+            counted(noise, "segment"),
             sweep.width,
             sweep.stability
         )

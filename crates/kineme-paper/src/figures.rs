@@ -212,8 +212,14 @@ impl Findings<'_> {
 fn figures(derived: &Derived, motions: &[Motion]) -> [(&'static str, Figure); 5] {
     let names: Vec<String> = derived.groups.iter().map(|g| g.name.clone()).collect();
     let residual = &derived.embedding.residual_variance;
-    let several = chains(derived, motions.len()).iter().any(|chain| chain.len() > 1);
-    let merged = derived.behaviors.items.iter().any(|b| b.primitives.len() > 1);
+    let several = chains(derived, motions.len())
+        .iter()
+        .any(|chain| chain.len() > 1);
+    let merged = derived
+        .behaviors
+        .items
+        .iter()
+        .any(|b| b.primitives.len() > 1);
     let figure = |name, title: &str, caption: &str, svg| {
         let figure = Figure {
             title: title.into(),
@@ -235,7 +241,11 @@ fn figures(derived: &Derived, motions: &[Motion]) -> [(&'static str, Figure); 5]
             "Embedding of the segments",
             &format!(
                 "Every segment is a point; segments that are alike and lead to the like lie together.{}",
-                if several { " Faint lines join what followed in a recording." } else { "" }
+                if several {
+                    " Faint lines join what followed in a recording."
+                } else {
+                    ""
+                }
             ),
             embedding(derived, motions, &names),
         ),
@@ -244,7 +254,11 @@ fn figures(derived: &Derived, motions: &[Motion]) -> [(&'static str, Figure); 5]
             "Time line of the recordings",
             &format!(
                 "When each group occurs.{}",
-                if merged { " Brackets are behaviors: primitives that alternate, such as out and back." } else { "" }
+                if merged {
+                    " Brackets are behaviors: primitives that alternate, such as out and back."
+                } else {
+                    ""
+                }
             ),
             kineme_report::timeline(&rows(derived, motions), &names),
         ),
@@ -314,7 +328,7 @@ fn embedding(derived: &Derived, motions: &[Motion], names: &[String]) -> String 
     }
     // An item that was left out of the embedding has no place.
     for point in points.iter_mut().filter(|p| p.is_empty()) {
-        *point = vec![f64::NAN; 2];
+        *point = vec![f64::NAN];
     }
     kineme_report::embedding(&kineme_report::Embedding {
         points: &points,
@@ -384,7 +398,11 @@ pub fn summary(derived: &Derived, motions: &[Motion]) -> Vec<String> {
         "{} of {} {} {}; {} {}",
         counted(segments, "segment"),
         counted(motions.len(), "motion"),
-        if segments == 1 { "falls into" } else { "fall into" },
+        if segments == 1 {
+            "falls into"
+        } else {
+            "fall into"
+        },
         counted(derived.groups.len(), "group"),
         match segments - grouped {
             0 => "none is left over.".to_string(),

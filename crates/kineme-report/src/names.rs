@@ -17,7 +17,10 @@ pub fn short_names(names: &[&str]) -> Vec<String> {
     }
     let file = first.rsplit('/').next().unwrap_or(first);
     // What is only an extension is a name.
-    let extension = file.rfind('.').filter(|at| *at > 0).map_or("", |at| &file[at..]);
+    let extension = file
+        .rfind('.')
+        .filter(|at| *at > 0)
+        .map_or("", |at| &file[at..]);
     let without = |name: &str| {
         let name = &name[folder.len()..];
         let stem = name.strip_suffix(extension)?;
@@ -39,12 +42,18 @@ mod tests {
         for (names, expected) in [
             (vec!["a/b/x.amc", "a/b/y.amc"], vec!["x", "y"]),
             (vec!["a/b/x.amc", "a/c/x.amc"], vec!["b/x", "c/x"]),
-            (vec!["a/bc/x.bvh", "a/bd/x.csv"], vec!["bc/x.bvh", "bd/x.csv"]),
+            (
+                vec!["a/bc/x.bvh", "a/bd/x.csv"],
+                vec!["bc/x.bvh", "bd/x.csv"],
+            ),
             (vec!["x.bvh", "a/y.bvh"], vec!["x", "a/y"]),
             (vec!["a/x.bvh"], vec!["x"]),
             (vec!["a/.bvh", "a/x.bvh"], vec![".bvh", "x.bvh"]),
             (vec!["walk", "run"], vec!["walk", "run"]),
-            (vec!["caf\u{e9}/x.bvh", "caf\u{e8}/x.bvh"], vec!["caf\u{e9}/x", "caf\u{e8}/x"]),
+            (
+                vec!["caf\u{e9}/x.bvh", "caf\u{e8}/x.bvh"],
+                vec!["caf\u{e9}/x", "caf\u{e8}/x"],
+            ),
             (vec![], vec![]),
         ] {
             assert_eq!(short_names(&names), expected, "{names:?}");

@@ -165,7 +165,12 @@ impl Page {
             }
             html.push_str("</div>\n");
         }
-        html.extend(section.listings.iter().map(|l| listing(&l.title, &l.excerpts)));
+        html.extend(
+            section
+                .listings
+                .iter()
+                .map(|l| listing(&l.title, &l.excerpts)),
+        );
         html.extend(section.tables.iter().map(Table::html));
         html.extend(section.figures.iter().map(Figure::html));
         html.push_str("</section>\n");
@@ -204,7 +209,10 @@ impl Page {
         html.push_str("</dl>\n");
         if !card.sources.is_empty() {
             let n = card.sources.len();
-            let title = format!("Where {} from", if n == 1 { "it comes" } else { "they come" });
+            let title = format!(
+                "Where {} from",
+                if n == 1 { "it comes" } else { "they come" }
+            );
             html.push_str(&listing(&title, &card.sources));
         }
         html.push_str("</article>\n");
@@ -231,10 +239,18 @@ fn paragraphs(texts: &[String]) -> String {
 /// A list of excerpts that is opened by who wants it. What the stage shows is a link that plays it there.
 fn listing(title: &str, excerpts: &[Excerpt]) -> String {
     let names: Vec<&str> = excerpts.iter().map(|e| e.motion.as_str()).collect();
-    let mut html = format!("<details class=\"listing\">\n<summary>{}</summary>\n<ol>\n", escape(title));
+    let mut html = format!(
+        "<details class=\"listing\">\n<summary>{}</summary>\n<ol>\n",
+        escape(title)
+    );
     for (excerpt, short) in excerpts.iter().zip(short_names(&names)) {
-        let Excerpt { start, end, take, .. } = excerpt;
-        let text = format!("{} <small>{start:.2}\u{2013}{end:.2} s</small>", escape(&short));
+        let Excerpt {
+            start, end, take, ..
+        } = excerpt;
+        let text = format!(
+            "{} <small>{start:.2}\u{2013}{end:.2} s</small>",
+            escape(&short)
+        );
         let name = escape(&excerpt.motion);
         html.push_str(&match take {
             Some(take) => format!(
@@ -253,7 +269,11 @@ fn index<'a>(cards: impl Iterator<Item = (usize, &'a Card)>, title: &str) -> Str
         format!(
             "<a href=\"#primitive-{number}\" style=\"--hue:{}\"{}>{}</a>\n",
             colour(card.colour),
-            if card.doubt.is_empty() { "" } else { " class=\"doubted\"" },
+            if card.doubt.is_empty() {
+                ""
+            } else {
+                " class=\"doubted\""
+            },
             escape(&card.name)
         )
     };

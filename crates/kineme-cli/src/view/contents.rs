@@ -3,7 +3,9 @@
 use kineme::retargeting::RoleMap;
 use kineme::{Motion, Recording, Vocabulary};
 use kineme_paper::figures::counted;
-use kineme_paper::scene::{CardBudget, HOW_TO_READ, Shape, Shown, actor, actor_of_recording, cards};
+use kineme_paper::scene::{
+    CardBudget, HOW_TO_READ, Shape, Shown, actor, actor_of_recording, cards,
+};
 use kineme_report::scene::{Scene, Take};
 use kineme_report::{Page, Section, Table, short_names};
 

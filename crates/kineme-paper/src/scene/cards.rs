@@ -254,7 +254,10 @@ fn facts(primitive: &Primitive, secs: f64) -> Vec<[String; 2]> {
     let exemplars = primitive.exemplars().len();
     let group = primitive.group();
     match group.filter(|g| g.members != exemplars) {
-        Some(group) => fact("exemplars", format!("{exemplars} of {} segments", group.members)),
+        Some(group) => fact(
+            "exemplars",
+            format!("{exemplars} of {} segments", group.members),
+        ),
         None => fact("exemplars", exemplars.to_string()),
     }
     if let Some(coherence) = group.and_then(|g| g.coherence) {
@@ -270,10 +273,14 @@ fn facts(primitive: &Primitive, secs: f64) -> Vec<[String; 2]> {
 /// Which primitives alternate with one.
 fn behavior(vocabulary: &Vocabulary, name: &str) -> Option<[String; 2]> {
     let mut behaviors = vocabulary.behaviors().iter();
-    let of = behaviors.find(|b| b.primitives.len() > 1 && b.primitives.iter().any(|p| p == name))?;
+    let of =
+        behaviors.find(|b| b.primitives.len() > 1 && b.primitives.iter().any(|p| p == name))?;
     let others = of.primitives.iter().filter(|p| *p != name);
     let others: Vec<&str> = others.map(String::as_str).collect();
-    Some(["alternates with".into(), format!("{} ({})", others.join(", "), of.name)])
+    Some([
+        "alternates with".into(),
+        format!("{} ({})", others.join(", "), of.name),
+    ])
 }
 
 /// Why a group may be one that nobody meant.
