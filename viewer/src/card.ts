@@ -58,7 +58,7 @@ export class CardView {
     this.live.colour(colour);
     this.bodies.add(this.live.group);
     for (let i = 0; i < card.exemplars.length; i++) {
-      const ghost = new Figure(body, COARSE, GHOST);
+      const ghost = new Figure(body, COARSE, GHOST, i);
       ghost.colour(colour);
       this.ghosts.push(ghost);
       this.bodies.add(ghost.group);

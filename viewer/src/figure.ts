@@ -22,7 +22,8 @@ export class Figure {
   private readonly circle: Float32Array;
   private readonly order: number[];
 
-  constructor(private readonly body: Body, private readonly detail: Detail, ghost: number | null = null) {
+  /** `ghost`: how solid it is, if it is seen through; `layer`: which of several ghosts that stand in one another, none of which hides another. */
+  constructor(private readonly body: Body, private readonly detail: Detail, ghost: number | null = null, layer: number | null = null) {
     this.points = new Float32Array(3 * body.points);
     this.order = outward(body);
     const columns = detail.around + 1;
@@ -53,10 +54,16 @@ export class Figure {
     mesh.frustumCulled = false;
     if (ghost !== null) {
       // Depth first, colour after: of what is seen through only the nearest surface shows.
-      const depth = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ colorWrite: false }));
+      const depth = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ colorWrite: false, transparent: true }));
       depth.frustumCulled = false;
-      depth.renderOrder = 1;
-      mesh.renderOrder = 2;
+      depth.renderOrder = 1 + 2 * (layer ?? 0);
+      mesh.renderOrder = depth.renderOrder + 1;
+      if (layer !== null) {
+        depth.onBeforeRender = (renderer) => {
+          renderer.state.buffers.depth.setMask(true);
+          renderer.clearDepth();
+        };
+      }
       this.material.transparent = true;
       this.material.opacity = ghost;
       this.material.depthWrite = false;

@@ -345,6 +345,7 @@ mod tests {
                     actors: vec![actor],
                     ..Take::default()
                 }],
+                vocabulary: String::new(),
                 primitives: vec![Card {
                     name: "<jab>".into(),
                     phases: 2,

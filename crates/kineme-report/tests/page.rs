@@ -147,7 +147,10 @@ fn columns_of_numbers_stand_right() {
 #[test]
 fn sources_are_links_where_a_take_shows_them() {
     let html = page().html();
-    assert_eq!(html.matches("data-take=\"1\" data-secs=\"1.500\"").count(), 2);
+    assert_eq!(
+        html.matches("data-take=\"1\" data-secs=\"1.500\"").count(),
+        2
+    );
     assert!(html.contains("<li title=\"takes/elsewhere.bvh\">elsewhere"));
     assert!(html.contains("&lt;/a&gt; &amp; one"));
 }

@@ -24,7 +24,8 @@ impl Default for CardBudget {
     fn default() -> Self {
         Self {
             bytes: 5_000_000,
-            exemplars: 8,
+            // A grid of three by three, as choreographies have it.
+            exemplars: 9,
         }
     }
 }
