@@ -119,10 +119,11 @@ fn refusal(name: &str, (found, expected): Flaw) -> FormatError {
 fn unreadable(bytes: &[u8], error: &SafeTensorError) -> String {
     match error {
         _ if bytes.is_empty() => "an empty file".into(),
-        SafeTensorError::InvalidHeaderLength | SafeTensorError::MetadataIncompleteBuffer
-            if bytes.get(8) == Some(&b'{') =>
-        {
+        SafeTensorError::InvalidHeaderLength if bytes.get(8) == Some(&b'{') => {
             "a file that was cut off".into()
+        }
+        SafeTensorError::MetadataIncompleteBuffer => {
+            "a file of another length than its header says".into()
         }
         SafeTensorError::HeaderTooSmall
         | SafeTensorError::HeaderTooLarge
