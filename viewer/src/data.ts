@@ -113,6 +113,8 @@ export interface Scene {
   bodies: Body[];
   takes: Take[];
   primitives: Card[];
+  /** The file of the primitives, where they may be changed; else empty. */
+  vocabulary: string;
 }
 
 /** The scene that a page holds: JSON, packed. */
@@ -136,7 +138,9 @@ export function places(packed: Places): Float32Array {
   // A row holds the differences to the one before, which wrap round.
   const row = new Int16Array(Math.max(3 * packed.points, 1));
   for (let i = 0; i < out.length; i++) {
-    const whole = (row[i % row.length] += view.getInt16(2 * i, true));
+    row[i % row.length] += view.getInt16(2 * i, true);
+    // Read again: an assignment's own value has not wrapped.
+    const whole = row[i % row.length];
     out[i] = whole === -32768 ? NaN : whole * packed.step;
   }
   return out;

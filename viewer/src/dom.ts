@@ -31,25 +31,48 @@ export function toggle(label: string, sign: string, on: boolean, act: (on: boole
   return element;
 }
 
-/** One of several, by name: a row of them, or a list where they are many. */
-export function choice(label: string, names: string[], chosen: (i: number) => void): HTMLElement {
-  if (names.length > 9) {
-    const list = make("select", { "aria-label": label, class: "choice" });
-    names.forEach((name, i) => list.append(make("option", { value: String(i) }, name)));
-    list.addEventListener("change", () => chosen(Number(list.value)));
-    return list;
-  }
-  const row = make("div", { class: "choice row", role: "radiogroup", "aria-label": label });
-  names.forEach((name, i) => {
-    const one = make("input", { type: "radio", name: label, value: String(i) });
-    one.checked = i === 0;
-    one.addEventListener("change", () => {
-      chosen(i);
-      one.parentElement?.scrollIntoView({ block: "nearest", inline: "nearest" });
+/** One of several, by name: a row of them, or a list where they are many, with what leads through it. */
+export class Choice {
+  readonly element: HTMLElement;
+  private readonly boxes: HTMLInputElement[] = [];
+  private readonly list: HTMLSelectElement | null = null;
+  private at = 0;
+
+  constructor(label: string, private readonly names: string[], private readonly chosen: (i: number) => void) {
+    if (names.length > 9) {
+      const list = make("select", { "aria-label": label });
+      names.forEach((name, i) => list.append(make("option", { value: String(i) }, name)));
+      list.addEventListener("change", () => this.choose(Number(list.value)));
+      this.list = list;
+      this.element = make("div", { class: "choice list" }, list,
+        button("Previous (P)", "\u2039", () => this.step(-1)), button("Next (N)", "\u203a", () => this.step(1)));
+      return;
+    }
+    this.element = make("div", { class: "choice row", role: "radiogroup", "aria-label": label });
+    names.forEach((name, i) => {
+      const one = make("input", { type: "radio", name: label, value: String(i) });
+      one.checked = i === 0;
+      one.addEventListener("change", () => this.choose(i));
+      this.boxes.push(one);
+      this.element.append(make("label", {}, one, name));
     });
-    row.append(make("label", {}, one, name));
-  });
-  return row;
+  }
+
+  choose(i: number): void {
+    this.at = i;
+    if (this.list) this.list.value = String(i);
+    const box = this.boxes[i];
+    if (box) {
+      box.checked = true;
+      box.parentElement?.scrollIntoView({ block: "nearest", inline: "nearest" });
+    }
+    this.chosen(i);
+  }
+
+  /** The one so many further on; after the last comes the first. */
+  step(by: number): void {
+    this.choose((this.at + by + this.names.length) % this.names.length);
+  }
 }
 
 /** Black or white, whichever reads better on a colour (relative luminance of WCAG 2.1). */

@@ -22,7 +22,8 @@ export class Figure {
   private readonly circle: Float32Array;
   private readonly order: number[];
 
-  constructor(private readonly body: Body, private readonly detail: Detail, ghost: number | null = null) {
+  /** `ghost`: how solid it is, if it is seen through; `layer`: which of several ghosts that stand in one another, none of which hides another. */
+  constructor(private readonly body: Body, private readonly detail: Detail, ghost: number | null = null, layer: number | null = null) {
     this.points = new Float32Array(3 * body.points);
     this.order = outward(body);
     const columns = detail.around + 1;
@@ -53,10 +54,16 @@ export class Figure {
     mesh.frustumCulled = false;
     if (ghost !== null) {
       // Depth first, colour after: of what is seen through only the nearest surface shows.
-      const depth = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ colorWrite: false }));
+      const depth = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ colorWrite: false, transparent: true }));
       depth.frustumCulled = false;
-      depth.renderOrder = 1;
-      mesh.renderOrder = 2;
+      depth.renderOrder = 1 + 2 * (layer ?? 0);
+      mesh.renderOrder = depth.renderOrder + 1;
+      if (layer !== null) {
+        depth.onBeforeRender = (renderer) => {
+          renderer.state.buffers.depth.setMask(true);
+          renderer.clearDepth();
+        };
+      }
       this.material.transparent = true;
       this.material.opacity = ghost;
       this.material.depthWrite = false;
@@ -75,6 +82,27 @@ export class Figure {
   /** Where the body's centre is. */
   centre(out: THREE.Vector3): THREE.Vector3 {
     return out.fromArray(this.points, 3 * this.body.centre).add(this.group.position);
+  }
+
+  /** The place on the floor below the body's centre, as its postures have it. */
+  middle(): THREE.Vector3 {
+    return new THREE.Vector3().fromArray(this.points, 3 * this.body.centre).setZ(0);
+  }
+
+  /** Some of the places that a table's postures take up; each seen from below its own centre if the body is followed. */
+  static places({ centre, points }: Body, table: Float32Array, followed: boolean, most = 40): THREE.Vector3[] {
+    const rows = table.length / (3 * points);
+    const step = Math.max(1, Math.floor(rows / most));
+    const found: THREE.Vector3[] = [];
+    for (let row = 0; row < rows; row += step) {
+      const middle = new THREE.Vector3().fromArray(table, 3 * (row * points + centre)).setZ(0);
+      for (let i = 0; i < points; i++) {
+        const place = new THREE.Vector3().fromArray(table, 3 * (row * points + i));
+        if (followed) place.sub(middle);
+        if (Number.isFinite(place.x + place.y + place.z)) found.push(place);
+      }
+    }
+    return found;
   }
 
   /** Draws the body between rows of a table of its postures. */

@@ -38,6 +38,13 @@ export class FlowPicture {
     this.group.add(this.dot);
   }
 
+  /** The corners of the box that it fills. */
+  corners(): THREE.Vector3[] {
+    const signs = [-0.5, 0.5];
+    const corner = (x: number, y: number, z: number): THREE.Vector3 => new THREE.Vector3(z * SIZES[2], x * SIZES[0], y * SIZES[1] + HEIGHT);
+    return signs.flatMap((x) => signs.flatMap((y) => signs.map((z) => corner(x, y, z))));
+  }
+
   /** Where the movement is now, in the field's own coordinates. */
   now(coordinates: Float32Array): void {
     this.dot.position.copy(this.at(coordinates, 0));

@@ -2,6 +2,7 @@
 import { CardView } from "./card";
 import { unpacked, type Scene } from "./data";
 import type { Player } from "./player";
+import { Edits } from "./edits";
 import { Stage } from "./stage";
 import { slow } from "./world";
 import "./viewer.css";
@@ -14,8 +15,17 @@ interface Part {
 
 function start(scene: Scene): void {
   const parts: Part[] = [];
-  const stage = document.getElementById("stage");
-  if (stage && scene.takes.length > 0) parts.push(new Stage(scene, stage));
+  const section = document.getElementById("stage");
+  if (section && scene.takes.length > 0) {
+    const stage = new Stage(scene, section);
+    parts.push(stage);
+    document.addEventListener("click", (event) => {
+      const link = (event.target as HTMLElement).closest<HTMLElement>("a[data-take]");
+      if (!link || event.ctrlKey || event.metaKey || event.shiftKey) return;
+      event.preventDefault();
+      stage.play(Number(link.dataset.take), Number(link.dataset.secs));
+    });
+  }
 
   // A card is made when it is about to be seen: a page may hold many.
   const cards = [...document.querySelectorAll<HTMLElement>(".card")];
@@ -28,11 +38,12 @@ function start(scene: Scene): void {
     }
   }, { rootMargin: "300px" });
   for (const card of cards) soon.observe(card);
+  if (scene.vocabulary) new Edits(scene, cards);
 
   document.addEventListener("keydown", (event) => {
     const target = event.target as HTMLElement;
     const own = target.closest("select, textarea, button, a, input:not([type=range])");
-    if (own && (event.key === " " || own.matches("select, input"))) return;
+    if (own && (event.key === " " || own.matches("select, input, textarea"))) return;
     // A slider of a parameter has the arrows for itself; the one of time has them anyway.
     if (target.matches("input[type=range]:not(.scrub)") && event.key !== " ") return;
     const part = parts.find((p) => p.element.contains(target)) ?? (target === document.body ? parts[0] : undefined);

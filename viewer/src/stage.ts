@@ -1,12 +1,12 @@
 // The stage: one take at a time, its actors in three dimensions, its tracks beneath.
 import * as THREE from "three";
 import { places, type Actor, type Scene, type Take } from "./data";
-import { button, choice, make, toggle } from "./dom";
+import { button, Choice, make, toggle } from "./dom";
 import { Figure, FINE } from "./figure";
 import { Player } from "./player";
 import { around } from "./rows";
 import { Timeline } from "./timeline";
-import { neutral, View } from "./world";
+import { neutral, still, View } from "./world";
 
 interface Playing {
   actor: Actor;
@@ -18,6 +18,15 @@ interface Playing {
 
 /** Seconds in which a colour comes and goes. */
 const FADE = 0.1;
+/** Moments of a take that the camera's usual place is made for. */
+const MOMENTS = 32;
+/** Pixels that buttons over a narrow picture take. */
+const TOOLS = 46;
+/** What keys do, told to who asks. */
+const KEYS = [
+  ["Space", "play or pause"], ["\u2190 \u2192", "step; with Shift a second"], ["Home End", "beginning, end"], ["+ \u2212", "faster, slower"],
+  ["A D", "turn"], ["W S", "nearer, farther"], ["N P", "next and previous motion"],
+];
 
 export class Stage {
   readonly player: Player;
@@ -26,7 +35,9 @@ export class Stage {
   private readonly legend = make("div", { class: "legend", role: "group", "aria-label": "Bodies" });
   private readonly note = make("p", { class: "note" });
   private readonly beside: HTMLButtonElement;
+  private readonly choice: Choice | null = null;
   private readonly focus = new THREE.Vector3();
+  private readonly before = new THREE.Vector3();
   private playing: Playing[] = [];
   private take: Take;
   private following = true;
@@ -41,20 +52,25 @@ export class Stage {
       this.pose();
       this.frame();
     });
+    const keys = make("dl", { class: "keys" }, ...KEYS.flatMap(([key, what]) => [make("dt", {}, key), make("dd", {}, what)]));
+    keys.hidden = true;
     const tools = make("div", { class: "tools" },
       this.beside,
       toggle("Follow the body", "Follow", true, (on) => {
         this.following = on;
+        if (on) this.frame();
         this.pose();
       }),
       button("Reset the camera", "Reset", () => this.frame()),
       this.player.speeds,
+      toggle("Show what keys do", "Keys", false, (on) => (keys.hidden = !on)),
     );
     const port = make("div", { class: "viewport", tabindex: "0", role: "group", "aria-label": "The stage: space plays, arrows step, A and D turn, W and S come nearer and go farther" },
-      this.view.canvas, this.legend, tools);
+      this.view.canvas, this.legend, tools, keys);
     port.addEventListener("keydown", (event) => this.turned(event));
     if (scene.takes.length > 1) {
-      section.append(choice("Motion", scene.takes.map((take) => take.name), (i) => this.show(scene.takes[i])));
+      this.choice = new Choice("Motion", scene.takes.map((take) => take.name), (i) => this.show(scene.takes[i]));
+      section.append(this.choice.element);
     }
     const transport = make("div", { class: "transport" }, make("div", { class: "gutter" }, this.player.play, this.player.time), this.player.scrub);
     section.append(port, transport, this.timeline.element, this.note);
@@ -63,6 +79,15 @@ export class Stage {
 
   get element(): HTMLElement {
     return this.section;
+  }
+
+  /** Plays a take from a moment on, where the reader can see it. */
+  play(take: number, secs: number): void {
+    if (this.choice) this.choice.choose(take);
+    this.player.put(secs);
+    if (!still.matches) this.player.run(true);
+    this.section.scrollIntoView({ block: "start", behavior: still.matches ? "auto" : "smooth" });
+    this.section.querySelector<HTMLElement>(".viewport")?.focus({ preventScroll: true });
   }
 
   tick(secs: number): void {
@@ -134,8 +159,10 @@ export class Stage {
     }
     if (this.following) {
       this.middle(this.focus);
-      this.focus.z = this.view.controls.target.z;
-      if (Number.isFinite(this.focus.x)) this.view.follow(this.focus);
+      if (Number.isFinite(this.focus.x)) {
+        this.view.move(this.before.subVectors(this.focus, this.before));
+        this.before.copy(this.focus);
+      }
     }
     this.view.touch();
   }
@@ -150,26 +177,47 @@ export class Stage {
       out.add(centre);
       count += 1;
     }
-    out.divideScalar(count);
+    out.divideScalar(count).setZ(0);
   }
 
-  /** The camera's usual place: everybody in sight. */
+  /** The camera's usual place: whoever moves stays in sight, at all times if the camera goes along. */
   private frame(): void {
-    const at = new THREE.Vector3();
-    this.middle(at);
-    if (!Number.isFinite(at.x)) at.set(0, 0, 0.9);
-    const centre = new THREE.Vector3();
-    const wide = this.playing.map(({ figure }) => figure.centre(centre).setZ(0).distanceTo(at.clone().setZ(0)));
-    const spread = Math.max(0, ...wide.filter(Number.isFinite));
-    this.view.reach = 1.7 + spread;
-    at.z = 0.95;
-    this.view.look(at, 4.0 + 0.9 * spread);
+    this.middle(this.focus);
+    if (!Number.isFinite(this.focus.x)) this.focus.set(0, 0, 0);
+    this.before.copy(this.focus);
+    const moments = Array.from({ length: MOMENTS }, (_, i) => (i * this.take.secs) / (MOMENTS - 1));
+    this.view.clear = this.view.canvas.clientWidth < 660 ? TOOLS : 0;
+    this.view.show(moments.flatMap((secs) => this.seen(secs)));
+  }
+
+  /** Where the points of all bodies are at a moment, as if their middle were where it is now. */
+  private seen(secs: number): THREE.Vector3[] {
+    const middle = new THREE.Vector3();
+    const places: THREE.Vector3[] = [];
+    let bodies = 0;
+    for (const { actor, frames, shown } of this.playing) {
+      const row = Math.round((secs - actor.start_secs) * actor.rate_hz);
+      if (!shown || row < 0 || row >= actor.frames.rows) continue;
+      const { points, centre } = this.scene.bodies[actor.body];
+      const aside = new THREE.Vector3().fromArray(this.apart ? actor.aside : [0, 0, 0]);
+      const place = (i: number): THREE.Vector3 => new THREE.Vector3().fromArray(frames, 3 * (row * points + i)).add(aside);
+      if (!Number.isFinite(place(centre).x)) continue;
+      middle.add(place(centre));
+      bodies += 1;
+      for (let i = 0; i < points; i++) places.push(place(i));
+    }
+    middle.divideScalar(Math.max(bodies, 1)).setZ(0);
+    for (const place of places) place.sub(middle).add(this.focus);
+    return places.filter((place) => Number.isFinite(place.x + place.y + place.z));
   }
 
   private turned(event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const key = event.key.toLowerCase();
+    if (this.choice && (key === "n" || key === "p")) return void this.choice.step(key === "n" ? 1 : -1);
     const turns: Record<string, [number, number]> = { a: [-0.12, 1], d: [0.12, 1], w: [0, 0.92], s: [0, 1.08] };
-    const turn = turns[event.key.toLowerCase()];
-    if (!turn || event.ctrlKey || event.metaKey || event.altKey) return;
+    const turn = turns[key];
+    if (!turn) return;
     this.view.turn(...turn);
     event.preventDefault();
   }

@@ -120,6 +120,9 @@ export function slow(ms: number): void {
   for (const view of views) view.touch();
 }
 
+/** The share of a picture that bodies may fill. */
+const ROOM = 0.93;
+
 /** A canvas with a camera that the reader can turn. */
 export class View {
   readonly canvas = document.createElement("canvas");
@@ -133,8 +136,14 @@ export class View {
   onFloor = true;
   private stale = true;
   private drawn = 0;
+  /** Pixels at its top that are to stay free. */
+  clear = 0;
   private readonly home: THREE.Vector3;
-  private away = 5;
+  private wanted: THREE.Vector3[] = [];
+  /** How far it has been moved since. */
+  private readonly shift = new THREE.Vector3();
+  /** Whether the reader has turned it. */
+  private moved = false;
 
   constructor(label: string, from: [number, number, number] = [1, -0.62, 0.24]) {
     this.home = new THREE.Vector3(...from);
@@ -147,6 +156,7 @@ export class View {
     this.controls.maxDistance = 25;
     this.controls.enableZoom = false;
     this.controls.addEventListener("change", () => (this.stale = true));
+    this.controls.addEventListener("start", () => (this.moved = true));
     // A page that scrolls must not be caught by a picture: the wheel zooms with a key held, or after a click.
     this.canvas.addEventListener("pointerdown", () => (this.controls.enableZoom = true));
     this.canvas.addEventListener("pointerleave", () => (this.controls.enableZoom = false));
@@ -164,26 +174,47 @@ export class View {
     this.stale = true;
   }
 
-  /** Looks at a place from its usual side, `away` metres off. */
-  look(at: THREE.Vector3, away: number): void {
-    this.away = away;
-    this.controls.target.copy(at);
+  /** Looks from its usual side at what is to be seen, from so near that all of it is. */
+  show(wanted: THREE.Vector3[]): void {
+    this.wanted = wanted;
+    this.shift.set(0, 0, 0);
     this.reset();
   }
 
   reset(): void {
-    const aspect = Math.min(1, this.camera.aspect / 0.8);
-    this.camera.position.copy(this.home).setLength(this.away / Math.max(aspect, 0.45)).add(this.controls.target);
-    this.controls.update();
-    this.stale = true;
+    this.moved = false;
+    const toward = this.home.clone().normalize();
+    const across = new THREE.Vector3().crossVectors(this.camera.up, toward).normalize();
+    const upright = new THREE.Vector3().crossVectors(toward, across);
+    const depths = this.wanted.map((p) => p.dot(toward));
+    const depth = 0.5 * (Math.min(...depths) + Math.max(...depths));
+    if (!Number.isFinite(depth)) return;
+    const half = Math.tan(THREE.MathUtils.degToRad(0.5 * this.camera.fov)) * ROOM;
+    const top = half * Math.max(1 - (2 * this.clear) / Math.max(this.canvas.clientHeight, 1), 0.3);
+    const wide = half * this.camera.aspect;
+    const [right, middle] = [fit(this.wanted, across, depths, depth, wide, wide), fit(this.wanted, upright, depths, depth, top, half)];
+    const away = Math.min(Math.max(right.away, middle.away, 1.5), 16);
+    this.controls.target.copy(toward).multiplyScalar(depth)
+      .addScaledVector(across, right.centre(away)).addScaledVector(upright, middle.centre(away));
+    this.camera.position.copy(this.controls.target).addScaledVector(toward, away);
+    this.reach = Math.max(1.7, ...this.wanted.map((p) => Math.hypot(p.x - this.controls.target.x, p.y - this.controls.target.y)));
+    this.controls.target.add(this.shift);
+    this.camera.position.add(this.shift);
+    this.settle();
   }
 
   /** Moves camera and target together. */
-  follow(to: THREE.Vector3): void {
-    const by = to.clone().sub(this.controls.target);
+  move(by: THREE.Vector3): void {
     this.camera.position.add(by);
-    this.controls.target.copy(to);
+    this.controls.target.add(by);
+    this.shift.add(by);
+    this.settle();
+  }
+
+  /** The controls take the camera as it is; that is no turn of the reader's. */
+  private settle(): void {
     this.controls.update();
+    this.stale = true;
   }
 
   /** Turns about the target, or comes nearer: for keys. */
@@ -191,8 +222,8 @@ export class View {
     const arm = this.camera.position.clone().sub(this.controls.target);
     arm.applyAxisAngle(this.camera.up, by).multiplyScalar(nearer);
     this.camera.position.copy(this.controls.target).add(arm);
-    this.controls.update();
-    this.stale = true;
+    this.moved = true;
+    this.settle();
   }
 
   /** Draws if there is something new to see. */
@@ -222,6 +253,21 @@ export class View {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientHeight > 0) this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
-    this.stale = true;
+    if (this.moved) this.stale = true;
+    else this.reset();
   }
+}
+
+/** How far off a camera must be to see all places along one direction, and where its middle is then. */
+function fit(places: THREE.Vector3[], along: THREE.Vector3, depths: number[], depth: number, above: number, below: number): { away: number; centre(away: number): number } {
+  let [high, low] = [-Infinity, Infinity];
+  places.forEach((place, i) => {
+    const [at, nearer] = [place.dot(along), depths[i] - depth];
+    high = Math.max(high, at + nearer * above);
+    low = Math.min(low, at - nearer * below);
+  });
+  return {
+    away: (high - low) / (above + below),
+    centre: (away) => 0.5 * (high - away * above + low + away * below),
+  };
 }

@@ -103,6 +103,53 @@ await check("a slider changes posture and duration, the flowfield can be seen", 
   assert.notEqual((await picture(page, CARD)).sum, after.sum);
 });
 
+await check("an exemplar's source plays on the stage from its beginning", async (page) => {
+  await page.locator(".card summary").first().click();
+  await page.locator(".card a[data-take]").first().click();
+  assert.match(await time(page), /^1\.50/);
+  assert.ok(await page.locator(".choice input").nth(1).isChecked());
+  const top = await page.evaluate(() => document.querySelector("#stage").getBoundingClientRect().top);
+  assert.ok(Math.abs(top) < 40, `${top}`);
+  await page.keyboard.press("n");
+  assert.ok(await page.locator(".choice input").first().isChecked());
+});
+
+await check("names become a command, and come back", async (page) => {
+  await atCards(page);
+  const bar = page.locator(".edits");
+  assert.ok(await bar.isHidden());
+  await page.locator(".name").first().fill("hello, = there");
+  assert.equal(await bar.locator("code").textContent(), "kineme edit 'made up.kineme' -o 'made up-edited.kineme' --rename 'wave=hello- - there'");
+  await page.locator(".remove").nth(1).click();
+  assert.match(await bar.locator("code").textContent(), /--remove '<wave> too'$/);
+  await bar.locator("button").last().click();
+  assert.ok(await bar.isHidden());
+  assert.equal(await page.locator(".name").first().inputValue(), "wave");
+});
+
+await check("all of a body is seen at its widest and at its highest, beside what it is compared with", async (page) => {
+  await atCards(page);
+  for (const share of [0, 0.25, 0.5, 0.75, 1]) {
+    await redrawn(page, CARD, () => slide(page, ".card .scrub", share === 0 ? 0.01 : share * 1.1));
+    // Every wall of the picture is free of strong colour; the floor's lines are grey.
+    const touched = await page.evaluate(() => {
+      const canvas = document.querySelector(".card canvas");
+      const { width, height } = canvas;
+      const { data } = canvas.getContext("2d").getImageData(0, 0, width, height);
+      let found = 0;
+      for (let y = 0; y < height; y++) {
+        for (let x = 0; x < width; x++) {
+          if (x > 1 && y > 1 && x < width - 2 && y < height - 2) continue;
+          const [r, g, b, a] = data.subarray(4 * (y * width + x));
+          if (a > 150 && Math.max(r, g, b) - Math.min(r, g, b) > 60) found += 1;
+        }
+      }
+      return found;
+    });
+    assert.equal(touched, 0, `at ${share}`);
+  }
+});
+
 await check("the contents lead to their sections", async (page) => {
   await page.locator("nav a").last().click();
   const [place, top] = await page.evaluate(() => [location.hash, document.querySelector("#section-1").getBoundingClientRect().top]);

@@ -36,6 +36,7 @@ pub fn test(root: &Path) -> Result<(), String> {
     let folder = root.join("viewer");
     let page = page.display().to_string();
     run(&folder, "node", &["test/rows.mjs"])?;
+    run(&folder, "node", &["test/data.mjs"])?;
     run(&folder, "node", &["test/page.mjs", &page])
 }
 

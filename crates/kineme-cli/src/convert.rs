@@ -239,7 +239,7 @@ fn format(args: &ConvertArgs) -> Result<Written, Failure> {
         .map(|e| e.to_string_lossy().to_lowercase());
     if extension.as_deref() == Some("parquet") {
         return Err(Failure::usage(format!(
-            "`{}`: parquet is not written by this version",
+            "`{}`: Parquet cannot be written yet",
             args.out.display()
         ))
         .hint("write .csv or .npz"));

@@ -8,7 +8,7 @@ use kineme::segmentation::Segmenter;
 use kineme::{Modelling, Motion, Vocabulary};
 use kineme_formats::input::Entry;
 use kineme_formats::{FormatError, Place, marks, output, vocabulary};
-use kineme_paper::figures::{Report, summary};
+use kineme_paper::figures::{Report, counted, summary};
 
 use crate::args::{ClusteringName, DeriveArgs, Global, SecondLevelName, SegmenterName};
 use crate::bodies::built_in;
@@ -109,12 +109,13 @@ pub fn run(args: &DeriveArgs, global: &Global) -> Result<u8, Failure> {
     let bytes = vocabulary::write(&vocabulary, &shown).map_err(unwritten)?;
     if let Some(folder) = &args.report {
         let title = format!(
-            "{} primitives from {} motions",
-            derived.groups.len(),
-            motions.len()
+            "{} from {}",
+            counted(derived.groups.len(), "primitive"),
+            counted(motions.len(), "motion")
         );
         let summary = summary(&derived, &motions);
-        Report::of(&derived, &motions, &vocabulary, (&title, &summary))?
+        let file = if to_stdout { "" } else { shown.as_str() };
+        Report::of(&derived, &motions, &vocabulary, (&title, &summary), file)?
             .write(folder, existing(global))
             .map_err(unwritten)?;
     }
@@ -213,7 +214,7 @@ fn read_marks(path: &Path) -> Result<Marks, Failure> {
         FormatError::new(
             &shown,
             Place::File,
-            e.to_string(),
+            kineme_formats::told(&e),
             "a readable table of marks",
         )
     })?;

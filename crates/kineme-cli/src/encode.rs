@@ -203,10 +203,11 @@ fn text(told: &Told) -> String {
     };
     let spans: Vec<String> = told
         .spans
-        .iter()
-        .map(|s| {
-            let what = s.primitive.as_deref().unwrap_or("-");
-            format!("{:.1}-{:.1} s {what}", s.start, s.end)
+        // Nothing known twice in a row is nothing known for longer.
+        .chunk_by(|a, b| a.primitive.is_none() && b.primitive.is_none())
+        .map(|run| {
+            let what = run[0].primitive.as_deref().unwrap_or("-");
+            format!("{:.1}-{:.1} s {what}", run[0].start, run[run.len() - 1].end)
         })
         .collect();
     let rmse = match told.rmse {

@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 use kineme::Motion;
 use kineme::derivation::{Derived, Segment};
 use kineme::math::statistics::median;
+use kineme_paper::figures::counted;
 use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::table::{Side, aligned};
 
-/// Sources that a group's line names.
-const NAMED: usize = 3;
+/// Letters that the sources of a group's line may take, beyond the first.
+const NAMES_WIDTH: usize = 44;
 
 /// A derivation and the motions that it was given.
 pub struct Findings<'a> {
@@ -140,10 +141,11 @@ impl Findings<'_> {
         let grouped = derived.labels.iter().flatten().count();
         let segments = derived.segments.len();
         let mut text = format!(
-            "{segments} segments (median {:.2} s) in {} motions: {grouped} fall into {} groups, {} into none\n",
+            "{} (median {:.2} s) in {}: {grouped} in {}, {} in none\n",
+            counted(segments, "segment"),
             self.median_secs(0..segments),
-            self.motions.len(),
-            derived.groups.len(),
+            counted(self.motions.len(), "motion"),
+            counted(derived.groups.len(), "group"),
             segments - grouped
         );
         if !derived.groups.is_empty() {
@@ -178,6 +180,8 @@ impl Findings<'_> {
     }
 
     fn groups(&self) -> String {
+        let names: Vec<&str> = self.motions.iter().map(Motion::name).collect();
+        let names = kineme_report::short_names(&names);
         let rows: Vec<Vec<String>> = self
             .derived
             .groups
@@ -188,7 +192,7 @@ impl Findings<'_> {
                     group.segments.len().to_string(),
                     group.coherence.map_or("-".into(), |c| format!("{c:.2}")),
                     format!("{:.2}", self.median_secs(group.segments.iter().copied())),
-                    self.sources(&group.segments),
+                    self.sources(&group.segments, &names),
                 ]
             })
             .collect();
@@ -203,26 +207,31 @@ impl Findings<'_> {
     }
 
     /// The motions that most of these segments come from.
-    fn sources(&self, segments: &[usize]) -> String {
+    fn sources(&self, segments: &[usize], names: &[String]) -> String {
         let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
         for &s in segments {
             *counts.entry(self.derived.segments[s].motion).or_default() += 1;
         }
         let mut counts: Vec<(usize, usize)> = counts.into_iter().collect();
         counts.sort_by_key(|&(motion, count)| (std::cmp::Reverse(count), motion));
-        let named = counts.iter().take(NAMED).map(|&(motion, count)| {
-            let name = self.motions[motion].name();
-            let name = name.rsplit('/').next().unwrap_or(name);
-            match count {
-                1 => name.to_owned(),
-                n => format!("{name} x{n}"),
-            }
+        let named = counts.iter().map(|&(motion, count)| match count {
+            1 => names[motion].clone(),
+            n => format!("{} x{n}", names[motion]),
         });
-        let mut text = named.collect::<Vec<_>>().join(", ");
-        if counts.len() > NAMED {
-            text.push_str(&format!(", {} more", counts.len() - NAMED));
+        let mut text = String::new();
+        let mut left = counts.len();
+        for name in named {
+            if !text.is_empty() && text.chars().count() + name.chars().count() > NAMES_WIDTH {
+                break;
+            }
+            text.push_str(if text.is_empty() { "" } else { ", " });
+            text.push_str(&name);
+            left -= 1;
         }
-        text
+        match left {
+            0 => text,
+            n => format!("{text}, {n} more"),
+        }
     }
 
     /// Behaviours of several groups.
@@ -245,11 +254,15 @@ impl Findings<'_> {
         let sweep = &derived.sweep;
         let noise = sweep.labels.iter().filter(|l| l.is_none()).count();
         format!(
-            "embedding: {} dimensions; residual variance with 1, 2, ...: {}\n\
-             sweep-and-prune beside it: {} groups, {noise} segments in none, width {:.3}, stability {:.2}\n",
-            derived.embedding.dimension,
+            "embedding: {}; residual variance with 1, 2, ...: {}\n\
+             sweep-and-prune beside it: {}, {} in none, width {:.3}, stability {:.2}\n",
+            counted(derived.embedding.dimension, "dimension"),
             shown.join(" "),
-            sweep.labels.iter().flatten().max().map_or(0, |m| m + 1),
+            counted(
+                sweep.labels.iter().flatten().max().map_or(0, |m| m + 1),
+                "group"
+            ),
+            counted(noise, "segment"),
             sweep.width,
             sweep.stability
         )

@@ -1,13 +1,13 @@
 //! Where results go: never over what is there without leave, never outside the folder that was named.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use kineme::math::rotation::Axis;
 use kineme::{Format, Motion, Recording, Source};
 use kineme_formats::output::Existing;
 use kineme_formats::tables::body_angles;
-use kineme_formats::{bvh, npz};
+use kineme_formats::{bvh, npz, output};
 
 use crate::args::{Global, Written};
 use crate::failure::Failure;
@@ -21,19 +21,23 @@ pub fn existing(global: &Global) -> Existing {
     }
 }
 
-/// Refuses, before any work, what would be refused after it.
+/// Refuses, before any work, what would be refused after it: to write over what is there, or where nothing can be.
 pub fn refuse_existing<'a>(
     paths: impl IntoIterator<Item = &'a Path>,
     global: &Global,
 ) -> Result<(), Failure> {
-    let mut paths = paths.into_iter();
-    match paths.find(|path| path.symlink_metadata().is_ok()) {
-        Some(path) if !global.force => {
+    let mut probed = BTreeSet::new();
+    for path in paths {
+        if path.symlink_metadata().is_ok() && !global.force && !path.is_dir() {
             let message = format!("{} exists already", path.display());
-            Err(Failure::usage(message).hint("--force overwrites it"))
+            return Err(Failure::usage(message).hint("--force overwrites it"));
         }
-        _ => Ok(()),
+        // One answer for all files of a folder: there may be thousands.
+        if path.is_dir() || probed.insert(path.parent()) {
+            output::probe(path).map_err(unwritten)?;
+        }
     }
+    Ok(())
 }
 
 /// A failure to write is no unreadable input.

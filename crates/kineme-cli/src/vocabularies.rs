@@ -29,7 +29,9 @@ pub fn read_bytes(path: &Path, expected: &str) -> Result<(String, Vec<u8>), Fail
     };
     match read {
         Ok(bytes) => Ok((shown, bytes)),
-        Err(e) => Err(FormatError::new(&shown, Place::File, e.to_string(), expected).into()),
+        Err(e) => {
+            Err(FormatError::new(&shown, Place::File, kineme_formats::told(&e), expected).into())
+        }
     }
 }
 

@@ -42,6 +42,14 @@ fn exit_codes_say_what_went_wrong_and_hints_what_to_do() {
             "hint: give more motion",
         ),
         ("derive arms.bvh -o v --shape 2", 2, "0 to 1"),
+        ("derive arms.bvh -o .", 1, ".: found a folder"),
+        (
+            "derive arms.bvh -o arms.bvh/v",
+            1,
+            "arms.bvh/v: found a file where a folder should be",
+        ),
+        ("derive no.bvh -o v", 3, "no.bvh: found no such file"),
+        ("show arms.bvh", 3, "arms.bvh: found another kind of file"),
         ("derive arms.bvh -o v --body zeus", 2, "nearest: `ares`"),
         ("derive arms.bvh -o v --body g1.xml", 2, "hint: --body ares"),
         ("convert arms.bvh a.csv --body g1.urdf", 2, "hint: MuJoCo"),
@@ -173,13 +181,23 @@ fn what_is_damaged_is_told_with_file_place_found_and_expected() {
         ("clip.json", whole(clip), "clip.json"),
         ("msr.txt", whole(&msr), "msr.txt"),
         ("alone.amc", whole(AMC), "no ASF"),
-        ("marker.c3d", vec![2, 0x50, 0, 0], "C3D is not read"),
+        ("marker.c3d", vec![2, 0x50, 0, 0], "found C3D"),
         (
             "words.txt",
             whole("nothing of the kind\n"),
             "no motion format",
         ),
-        ("empty.csv", Vec::new(), "empty.csv"),
+        ("empty.csv", Vec::new(), "found an empty file"),
+        (
+            "table.csv",
+            whole("subject,age\n1,30\n"),
+            "a table whose header begins `subject`, `age`, expected `frame` or `time`",
+        ),
+        (
+            "moves.kineme",
+            [&[2, 0, 0, 0, 0, 0, 0, 0][..], b"{\"a\":1}"].concat(),
+            "found a vocabulary",
+        ),
         ("half.zip", b"PK\x03\x04 and so on".to_vec(), "half.zip"),
     ];
     for (name, bytes, word) in cases {

@@ -4,7 +4,7 @@ use kineme::Recording;
 
 use crate::error::{FormatError, Place, Result};
 use crate::tables::{body_angles, msr, positions};
-use crate::text::{Blame, Lines, number, words};
+use crate::text::{Blame, Lines, number, quoted, words};
 use crate::{amc, asf, bvh, deepmimic};
 
 /// Bytes from the beginning of a file that suffice to tell its format.
@@ -125,6 +125,42 @@ fn by_content(head: &[u8]) -> Option<Kind> {
     (four(first) && second.is_some_and(four)).then_some(Kind::Msr)
 }
 
+/// What a file of no motion format seems to be, and what would be right in its place.
+pub(crate) fn unknown(bytes: &[u8]) -> (String, String) {
+    const MOTIONS: &str =
+        "BVH, AMC, DeepMimic JSON, a position or joint-angle table, or MSR-Action3D text";
+    // A safetensors container begins with the length of its header, which is JSON.
+    if bytes.get(8..10) == Some(b"{\"") {
+        let motion = "a motion; `kineme show` and `kineme view` look at vocabularies";
+        return ("a vocabulary".into(), motion.into());
+    }
+    let mut lines = Lines::new(&bytes[..bytes.len().min(HEAD)]);
+    let Some((_, first)) = lines.next_full() else {
+        return ("an empty file".into(), MOTIONS.into());
+    };
+    let columns = std::str::from_utf8(first).ok().map(|text| {
+        let columns = text.split(',').map(|c| c.trim().trim_matches('"'));
+        columns.collect::<Vec<_>>()
+    });
+    match columns.filter(|columns| columns.len() > 1) {
+        Some(columns) => {
+            let named: Vec<String> = columns
+                .iter()
+                .take(4)
+                .map(|c| quoted(c.as_bytes()))
+                .collect();
+            let more = if columns.len() > 4 { ", ..." } else { "" };
+            (
+                format!("a table whose header begins {}{more}", named.join(", ")),
+                "`frame` or `time` and then `<joint>_x`, `<joint>_y`, `<joint>_z` joint by joint (metres), or \
+                 `time,root_x,root_y,root_z,root_yaw` and joint angles"
+                    .into(),
+            )
+        }
+        None => ("no motion format".into(), MOTIONS.into()),
+    }
+}
+
 /// A table's kind by its header.
 fn table(header: &[u8]) -> Option<Kind> {
     let text = std::str::from_utf8(header).ok()?;
@@ -164,8 +200,9 @@ pub fn parse(
         Err(FormatError::new(
             name,
             Place::File,
-            format!("{what} is not read by this version"),
-            "another format",
+            what,
+            "BVH, AMC, DeepMimic JSON, a position or joint-angle table, or MSR-Action3D text: this version does not \
+             read it",
         ))
     };
     match kind {

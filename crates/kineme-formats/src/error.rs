@@ -1,6 +1,6 @@
 //! Errors of readers and writers: which file, where in it, what was found, what would be right.
 
-use std::fmt;
+use std::{fmt, io};
 
 /// Where in a file something is wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,6 +43,24 @@ impl FormatError {
             found: found.into(),
             expected: expected.into(),
         }
+    }
+}
+
+/// What the system says of a file, in words for people.
+///
+/// ```
+/// let missing = std::io::Error::from(std::io::ErrorKind::NotFound);
+/// assert_eq!(kineme_formats::told(&missing), "no such file or folder");
+/// ```
+pub fn told(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "no such file or folder".into(),
+        io::ErrorKind::IsADirectory => "a folder".into(),
+        io::ErrorKind::NotADirectory => "a file where a folder should be".into(),
+        io::ErrorKind::PermissionDenied => "no permission".into(),
+        io::ErrorKind::StorageFull => "a full disk".into(),
+        io::ErrorKind::ReadOnlyFilesystem => "a disk that cannot be written".into(),
+        _ => error.to_string(),
     }
 }
 

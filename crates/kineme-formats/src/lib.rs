@@ -46,4 +46,4 @@ pub mod tables;
 mod text;
 pub mod vocabulary;
 
-pub use error::{FormatError, Place, Result};
+pub use error::{FormatError, Place, Result, told};

@@ -3,7 +3,7 @@
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use crate::error::{FormatError, Place, Result};
+use crate::error::{FormatError, Place, Result, told};
 
 /// What to do about a file that exists already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -29,7 +29,7 @@ pub fn write(
     let wrong = |found: String, expected: &str| {
         FormatError::new(shown.clone(), Place::File, found, expected)
     };
-    let failed = |e: io::Error| wrong(e.to_string(), "a file that can be written");
+    let failed = |e: io::Error| wrong(told(&e), "a file that can be written");
     let refused = || {
         wrong(
             "an existing file".into(),
@@ -73,6 +73,29 @@ pub fn write(
     Ok(())
 }
 
+/// Whether a file could be written here, asked before the work that it is to hold. Nothing is left behind.
+///
+/// # Errors
+/// When the path is a folder, or the nearest folder that exists takes no file.
+pub fn probe(path: &Path) -> Result<()> {
+    let wrong = |found: String, expected: &str| {
+        FormatError::new(path.display().to_string(), Place::File, found, expected)
+    };
+    if path.is_dir() {
+        return Err(wrong("a folder".into(), "the name of a file"));
+    }
+    let there = path
+        .ancestors()
+        .skip(1)
+        .find(|p| p.symlink_metadata().is_ok());
+    let folder = there.unwrap_or(Path::new("."));
+    let made = tempfile::Builder::new()
+        .prefix(".kineme-")
+        .tempfile_in(folder);
+    made.map(drop)
+        .map_err(|e| wrong(told(&e), "a file that can be written"))
+}
+
 /// As [`write()`], of bytes that are there already.
 ///
 /// # Errors
@@ -83,7 +106,7 @@ pub fn write_bytes(path: &Path, existing: Existing, bytes: &[u8]) -> Result<()> 
             FormatError::new(
                 path.display().to_string(),
                 Place::File,
-                e.to_string(),
+                told(&e),
                 "a file that can be written",
             )
         })

@@ -20,7 +20,7 @@ use kineme_report::{Figure, Page, Section};
 
 use crate::figures::{Findings, Report, summary};
 use crate::paper_figures::{CAPTIONS, NAMES, draw};
-use crate::scene::{CardBudget, cards, takes_of_show};
+use crate::scene::{CardBudget, HOW_TO_READ, cards, takes_of_show};
 use crate::sets::Result;
 use crate::show::{Act, PLANS, Show, show};
 use crate::table1::{MovementSettings, Row, embedded, table};
@@ -260,9 +260,8 @@ impl Demo {
         page.sections.push(Section {
             title: "Primitives".into(),
             text: vec![format!(
-                "{} primitives of exemplars that were written by hand: they moved the bodies above and recognised them. On \
-                 the left of each the exemplars, on the right what the sliders ask for, also where nobody wrote an \
-                 exemplar; marks on the sliders are exemplars.",
+                "{} primitives of exemplars that were written by hand: they moved the bodies above and recognised them. \
+                 {HOW_TO_READ}",
                 show.movements.primitives().len()
             )],
             cards: 0..page.scene.primitives.len(),

@@ -1,19 +1,22 @@
 //! The figures of a derivation, and the page that shows them.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use kineme::derivation::{Derived, Group};
 use kineme::skeleton::Skeleton;
 use kineme::{Motion, Vocabulary};
 use kineme_formats::output::{self, Existing};
-use kineme_report::scene::Scene;
-use kineme_report::{Figure, GroupPaths, Page, Row, Section, Span};
+use kineme_report::scene::{Excerpt, Scene, Take};
+use kineme_report::{Figure, GroupPaths, Listing, Page, Row, Section, Span};
 use rayon::prelude::*;
 
-use crate::scene::{CardBudget, Shape, Shown, cards, take_of_derived};
+use crate::scene::{CardBudget, HOW_TO_READ, Shape, Shown, cards, take_of_derived};
 
 /// The page among the files of a report.
 pub const PAGE: &str = "index.html";
+const TIMELINE: &str = "timeline.svg";
+const TRANSITIONS: &str = "transitions.svg";
 
 /// A report: file names and texts.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,7 +36,7 @@ pub(crate) struct Findings<'a> {
 
 impl Report {
     /// What was derived from `motions` and the vocabulary made of it, moving and as figures, on a page with this title
-    /// and these paragraphs.
+    /// and these paragraphs. `file` is where the vocabulary is, as a command line names it.
     ///
     /// # Errors
     /// When a primitive refuses its own parameters.
@@ -42,6 +45,7 @@ impl Report {
         motions: &[Motion],
         vocabulary: &Vocabulary,
         (title, summary): (&str, &[String]),
+        file: &str,
     ) -> kineme::Result<Self> {
         let (first, more) = summary.split_at(summary.len().min(1));
         let mut page = Page {
@@ -56,7 +60,9 @@ impl Report {
             known: &[],
         };
         let budget = CardBudget::default();
-        let figures = findings.put_on(&mut page, ["Primitives", "Figures"], more, &budget)?;
+        let text = [&[HOW_TO_READ.to_owned()], more].concat();
+        let figures = findings.put_on(&mut page, ["Primitives", "Figures"], &text, &budget)?;
+        page.scene.vocabulary = file.into();
         Ok(Self::new(&page, figures))
     }
 
@@ -73,8 +79,8 @@ impl Report {
             PAGE,
             "hand-paths.svg",
             "embedding.svg",
-            "timeline.svg",
-            "transitions.svg",
+            TIMELINE,
+            TRANSITIONS,
             "residual-variance.svg",
         ]
     }
@@ -107,7 +113,9 @@ impl Findings<'_> {
         text: &[String],
         budget: &CardBudget,
     ) -> kineme::Result<[(&'static str, Figure); 5]> {
+        let first_take = page.scene.takes.len();
         let mut notes = self.takes(&mut page.scene);
+        let takes = first_take..page.scene.takes.len();
         let (mut found, left_out) = cards(&mut page.scene, self.vocabulary, budget)?;
         for (card, what) in found.iter_mut().zip(self.known) {
             card.facts
@@ -120,21 +128,60 @@ impl Findings<'_> {
                 all - left_out
             ));
         }
+        for source in found.iter_mut().flat_map(|card| &mut card.sources) {
+            let motion = self.motions.iter().position(|m| m.name() == source.motion);
+            source.take = motion.and_then(|m| takes.clone().nth(m));
+        }
         let first = page.scene.primitives.len();
         page.scene.primitives.extend(found);
         page.sections.push(Section {
             title: titles[0].into(),
             text: [text, &notes].concat(),
             cards: first..page.scene.primitives.len(),
+            listings: self.left_over(takes).into_iter().collect(),
             ..Section::default()
         });
         let figures = figures(self.derived, self.motions);
+        let told = figures.iter().filter(|(file, _)| self.tells(file));
         page.sections.push(Section {
             title: titles[1].into(),
-            figures: figures.iter().map(|(_, f)| f.clone()).collect(),
+            figures: told.map(|(_, f)| f.clone()).collect(),
             ..Section::default()
         });
         Ok(figures)
+    }
+
+    /// The segments in no group.
+    fn left_over(&self, takes: Range<usize>) -> Option<Listing> {
+        let segments = self.derived.segments.iter().zip(&self.derived.labels);
+        let excerpts: Vec<Excerpt> = segments
+            .filter(|(_, label)| label.is_none())
+            .map(|(segment, _)| {
+                let motion = &self.motions[segment.motion];
+                Excerpt {
+                    motion: motion.name().into(),
+                    start: segment.frames.start as f64 / motion.rate_hz(),
+                    end: segment.frames.end as f64 / motion.rate_hz(),
+                    take: takes.clone().nth(segment.motion),
+                }
+            })
+            .collect();
+        let title = match excerpts.len() {
+            0 => return None,
+            1 => "One segment is in no group".into(),
+            n => format!("{n} segments are in no group"),
+        };
+        Some(Listing { title, excerpts })
+    }
+
+    /// Whether a figure says something of these motions: where each is one movement, nothing follows anything.
+    fn tells(&self, figure: &str) -> bool {
+        let followed = chains(self.derived, self.motions.len());
+        match figure {
+            TIMELINE => followed.iter().any(|chain| chain.len() > 1),
+            TRANSITIONS => counts(self.derived).iter().flatten().any(|&n| n > 0.0),
+            _ => true,
+        }
     }
 
     /// As many of the motions as there is room for, and what had to be left out.
@@ -143,9 +190,11 @@ impl Findings<'_> {
         let size = |m: &Motion| (m.duration_secs(), points);
         let sizes: Vec<(f64, usize)> = self.motions.iter().map(size).collect();
         let shown = Shown::within(TAKES_BYTES, &sizes);
-        for i in 0..shown.takes {
+        let names: Vec<&str> = self.motions.iter().map(|m| m.name()).collect();
+        let names = kineme_report::short_names(&names);
+        for (i, name) in names.into_iter().take(shown.takes).enumerate() {
             let take = take_of_derived(scene, self.derived, self.motions, i, shown.rate_hz);
-            scene.takes.push(take);
+            scene.takes.push(Take { name, ..take });
         }
         if shown.takes == self.motions.len() {
             return Vec::new();
@@ -163,6 +212,14 @@ impl Findings<'_> {
 fn figures(derived: &Derived, motions: &[Motion]) -> [(&'static str, Figure); 5] {
     let names: Vec<String> = derived.groups.iter().map(|g| g.name.clone()).collect();
     let residual = &derived.embedding.residual_variance;
+    let several = chains(derived, motions.len())
+        .iter()
+        .any(|chain| chain.len() > 1);
+    let merged = derived
+        .behaviors
+        .items
+        .iter()
+        .any(|b| b.primitives.len() > 1);
     let figure = |name, title: &str, caption: &str, svg| {
         let figure = Figure {
             title: title.into(),
@@ -182,18 +239,31 @@ fn figures(derived: &Derived, motions: &[Motion]) -> [(&'static str, Figure); 5]
         figure(
             "embedding.svg",
             "Embedding of the segments",
-            "Every segment is a point; segments that are alike and lead to the like lie together. Faint lines \
-             join what followed in a recording.",
+            &format!(
+                "Every segment is a point; segments that are alike and lead to the like lie together.{}",
+                if several {
+                    " Faint lines join what followed in a recording."
+                } else {
+                    ""
+                }
+            ),
             embedding(derived, motions, &names),
         ),
         figure(
-            "timeline.svg",
+            TIMELINE,
             "Time line of the recordings",
-            "When each group occurs. Brackets are behaviors: primitives that alternate, such as out and back.",
+            &format!(
+                "When each group occurs.{}",
+                if merged {
+                    " Brackets are behaviors: primitives that alternate, such as out and back."
+                } else {
+                    ""
+                }
+            ),
             kineme_report::timeline(&rows(derived, motions), &names),
         ),
         figure(
-            "transitions.svg",
+            TRANSITIONS,
             "Transitions between groups",
             "How often each group (row) was followed by each other one (column).",
             kineme_report::transitions(&names, &counts(derived)),
@@ -258,7 +328,7 @@ fn embedding(derived: &Derived, motions: &[Motion], names: &[String]) -> String 
     }
     // An item that was left out of the embedding has no place.
     for point in points.iter_mut().filter(|p| p.is_empty()) {
-        *point = vec![f64::NAN; 2];
+        *point = vec![f64::NAN];
     }
     kineme_report::embedding(&kineme_report::Embedding {
         points: &points,
@@ -282,7 +352,9 @@ fn chains(derived: &Derived, motions: usize) -> Vec<Vec<usize>> {
 
 fn rows(derived: &Derived, motions: &[Motion]) -> Vec<Row> {
     let chains = chains(derived, motions.len());
-    let row = |(motion, chain): (&Motion, Vec<usize>)| {
+    let names: Vec<&str> = motions.iter().map(|m| m.name()).collect();
+    let names = kineme_report::short_names(&names);
+    let row = |((motion, name), chain): ((&Motion, String), Vec<usize>)| {
         let span = |i: usize| {
             let group = derived.labels[i];
             let frames = &derived.segments[i].frames;
@@ -298,17 +370,22 @@ fn rows(derived: &Derived, motions: &[Motion]) -> Vec<Row> {
             }
         };
         Row {
-            name: motion.name().into(),
+            name,
             spans: chain.into_iter().map(span).collect(),
         }
     };
-    motions.iter().zip(chains).map(row).collect()
+    motions.iter().zip(names).zip(chains).map(row).collect()
 }
 
 fn counts(derived: &Derived) -> Vec<Vec<f64>> {
     let n = derived.transitions.n;
     let row = |from| (0..n).map(move |to| f64::from(derived.transitions.count(from, to)));
     (0..n).map(|from| row(from).collect()).collect()
+}
+
+/// How many of something, in words that fit the number.
+pub fn counted(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 /// What was found, in paragraphs for the page.
@@ -318,9 +395,15 @@ pub fn summary(derived: &Derived, motions: &[Motion]) -> Vec<String> {
     let merged = derived.behaviors.items.iter();
     let merged = merged.filter(|b| b.primitives.len() > 1).count();
     let mut paragraphs = vec![format!(
-        "{segments} segments of {} motions fall into {} groups; {} {}",
-        motions.len(),
-        derived.groups.len(),
+        "{} of {} {} {}; {} {}",
+        counted(segments, "segment"),
+        counted(motions.len(), "motion"),
+        if segments == 1 {
+            "falls into"
+        } else {
+            "fall into"
+        },
+        counted(derived.groups.len(), "group"),
         match segments - grouped {
             0 => "none is left over.".to_string(),
             1 => "one belongs to none.".to_string(),
@@ -343,7 +426,8 @@ pub fn summary(derived: &Derived, motions: &[Motion]) -> Vec<String> {
         .collect();
     if !doubtful.is_empty() {
         paragraphs.push(format!(
-            "Of low coherence, and perhaps groups that nobody meant: {}.",
+            "Of low coherence (below {}), and perhaps mixtures of several movements: {}.",
+            kineme_report::LOW_COHERENCE,
             doubtful.join(", ")
         ));
     }

@@ -11,11 +11,14 @@ const PLOT_HEIGHT: f64 = 430.0;
 const NAMED_IN_PLOT: usize = 24;
 const LEGEND_COLUMNS: usize = 6;
 const LEGEND_ENTRIES: usize = 72;
+/// Height of a group's row where there is one dimension.
+const ROW: f64 = 19.0;
+const UNCLUSTERED: &str = "unclustered";
 
 /// What [`embedding`] draws.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Embedding<'a> {
-    /// Coordinates of each segment, two or more; the first three are drawn.
+    /// Coordinates of each segment; the first three are drawn.
     pub points: &'a [Vec<f64>],
     /// The group of each segment, an index into `names`; `None` is unclustered. Missing at the end: `None`.
     pub groups: &'a [Option<usize>],
@@ -25,7 +28,8 @@ pub struct Embedding<'a> {
     pub recordings: &'a [Vec<usize>],
 }
 
-/// The embedded segments as a scatter plot, one view for two dimensions, two views (1-2 and 1-3) for three or more.
+/// The embedded segments as a scatter plot, one view for two dimensions, two views (1-2 and 1-3) for three or more;
+/// on one dimension a row for each group.
 ///
 /// Lengths are true: both axes of a view have one scale.
 pub fn embedding(data: &Embedding) -> String {
@@ -42,6 +46,9 @@ pub fn embedding(data: &Embedding) -> String {
         return nothing(TITLE, "There is no segment to show.");
     }
     let members = Members::of(data, &drawn);
+    if data.points.iter().all(|p| p.len() < 2) {
+        return on_a_line(TITLE, data, &drawn, &members);
+    }
     let in_space = data.points.iter().any(|p| p.len() > 2);
     let views: &[[usize; 2]] = if in_space {
         &[[0, 1], [0, 2]]
@@ -79,11 +86,95 @@ pub fn embedding(data: &Embedding) -> String {
     let mut bottom = draw_legend(&mut svg, below, data, &members);
     let lost = data.points.len() - drawn.len();
     if lost > 0 {
-        let remark = format!("{lost} segments without finite coordinates are left out.");
-        svg.text(MARGIN, bottom, Anchor::Start, SMALL, &remark);
+        svg.text(MARGIN, bottom, Anchor::Start, SMALL, &left_out(lost));
         bottom += 18.0;
     }
     svg.finish(Some(bottom))
+}
+
+/// An embedding of one dimension: a row for each group, so that points of several do not hide one another.
+fn on_a_line(
+    title: &str,
+    data: &Embedding,
+    drawn: &[(usize, [f64; 3])],
+    members: &Members,
+) -> String {
+    let mut svg = Svg::new(WIDTH, 0.0, title);
+    let rows = members.by_size.len() + usize::from(!members.noise.is_empty());
+    let names = members
+        .by_size
+        .iter()
+        .map(|g| text_width(&data.names[*g], LABEL.size));
+    let room = names
+        .fold(text_width(UNCLUSTERED, LABEL.size), f64::max)
+        .min(190.0)
+        + 60.0;
+    let left = MARGIN + room;
+    let bottom = PLOT_TOP + rows as f64 * ROW;
+    let range = extent(drawn.iter().map(|(_, c)| c[0])).unwrap_or([0.0, 1.0]);
+    let across = Scale::new(range, [left + 12.0, WIDTH - MARGIN - 12.0]);
+    svg.rectangle(
+        "class=\"panel\"",
+        [left, PLOT_TOP],
+        [WIDTH - MARGIN - left, bottom - PLOT_TOP],
+        "",
+    );
+    for (value, label) in across.ticks(8) {
+        let x = across.at(value);
+        svg.line("grid", [x, PLOT_TOP], [x, bottom]);
+        svg.text(x, bottom + 14.0, Anchor::Middle, SMALL, &label);
+    }
+    svg.text(
+        WIDTH - MARGIN,
+        PLOT_TOP - 8.0,
+        Anchor::End,
+        SMALL,
+        "the only dimension, across; a row a group",
+    );
+    let mut order = members.by_size.clone();
+    let middle = |g: usize| {
+        let mut at: Vec<f64> = members.groups[g].iter().map(|p| p[0]).collect();
+        at.sort_by(f64::total_cmp);
+        at[at.len() / 2]
+    };
+    order.sort_by(|a, b| middle(*a).total_cmp(&middle(*b)).then(a.cmp(b)));
+    let ends = [left - 8.0, PLOT_TOP + 0.5 * ROW];
+    for (row, &group) in order.iter().enumerate() {
+        let y = ends[1] + row as f64 * ROW;
+        let points = &members.groups[group];
+        let name = fitted(&data.names[group], LABEL.size, room - 50.0);
+        svg.text(
+            ends[0],
+            y + 4.0,
+            Anchor::End,
+            LABEL,
+            &format!("{name} ({})", points.len()),
+        );
+        svg.open(&mark_style(group), &data.names[group]);
+        for point in points {
+            svg.path("", &mark(group, [across.at(point[0]), y], 3.6));
+        }
+        svg.close();
+    }
+    if !members.noise.is_empty() {
+        let y = ends[1] + order.len() as f64 * ROW;
+        let name = format!("{UNCLUSTERED} ({})", members.noise.len());
+        svg.text(ends[0], y + 4.0, Anchor::End, LABEL, &name);
+        svg.open("class=\"noise\" fill-opacity=\"0.8\"", UNCLUSTERED);
+        for point in &members.noise {
+            svg.disc("", [across.at(point[0]), y], 2.7);
+        }
+        svg.close();
+    }
+    let lost = data.points.len() - drawn.len();
+    if lost > 0 {
+        svg.text(MARGIN, bottom + 34.0, Anchor::Start, SMALL, &left_out(lost));
+    }
+    svg.finish(Some(bottom + if lost > 0 { 46.0 } else { 26.0 }))
+}
+
+fn left_out(segments: usize) -> String {
+    format!("{segments} segments without finite coordinates are left out.")
 }
 
 /// The points of each group, and of none.

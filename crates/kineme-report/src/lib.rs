@@ -17,6 +17,7 @@
 mod axis;
 mod embedding;
 mod hand_paths;
+mod names;
 mod packed;
 mod page;
 mod palette;
@@ -34,7 +35,8 @@ mod viewer;
 
 pub use embedding::{Embedding, embedding};
 pub use hand_paths::{GroupPaths, LOW_COHERENCE, hand_paths};
-pub use page::{Figure, Page, Section};
+pub use names::short_names;
+pub use page::{Figure, Listing, Page, Section};
 #[cfg(feature = "png")]
 pub use png::{PngError, png};
 pub use residual::residual_variance;

@@ -9,8 +9,9 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use serde::Serialize;
 
+use crate::names::short_names;
 use crate::palette::{COLOURS, colour};
-use crate::scene::{Card, Scene};
+use crate::scene::{Card, Excerpt, Scene};
 use crate::strip::strip;
 use crate::svg::escape;
 use crate::table::Table;
@@ -49,10 +50,21 @@ pub struct Section {
     pub text: Vec<String>,
     /// Which of the scene's primitives have their cards here.
     pub cards: Range<usize>,
+    /// Lists that are opened by who wants them, such as what is in no primitive.
+    pub listings: Vec<Listing>,
     /// Tables.
     pub tables: Vec<Table>,
     /// Still figures.
     pub figures: Vec<Figure>,
+}
+
+/// Excerpts of motions under a heading, which play on the stage where it has them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Listing {
+    /// What they are.
+    pub title: String,
+    /// Which.
+    pub excerpts: Vec<Excerpt>,
 }
 
 const STYLE: &str = include_str!("page.css");
@@ -61,6 +73,8 @@ const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 /// Postures in the strip of a primitive.
 const POSTURES: usize = 9;
+/// Cards that are seen at a glance; more have an index.
+const AT_A_GLANCE: usize = 6;
 
 impl Page {
     /// The page. Nothing is loaded from elsewhere: styles, figures, data and, where it was built, the viewer are in it.
@@ -142,12 +156,21 @@ impl Page {
         );
         let cards = self.scene.primitives.get(section.cards.clone());
         if let Some(cards) = cards.filter(|cards| !cards.is_empty()) {
+            if cards.len() > AT_A_GLANCE {
+                html.push_str(&index(section.cards.clone().zip(cards), &title));
+            }
             html.push_str("<div class=\"cards\">\n");
             for (i, card) in section.cards.clone().zip(cards) {
                 html.push_str(&self.card(i, card));
             }
             html.push_str("</div>\n");
         }
+        html.extend(
+            section
+                .listings
+                .iter()
+                .map(|l| listing(&l.title, &l.excerpts)),
+        );
         html.extend(section.tables.iter().map(Table::html));
         html.extend(section.figures.iter().map(Figure::html));
         html.push_str("</section>\n");
@@ -159,7 +182,8 @@ impl Page {
     fn card(&self, number: usize, card: &Card) -> String {
         let name = escape(&card.name);
         let mut html = format!(
-            "<article class=\"card\" data-card=\"{number}\" style=\"--hue:{}\">\n<h3>{name}</h3>\n",
+            "<article class=\"card\" id=\"primitive-{number}\" data-card=\"{number}\" style=\"--hue:{}\">\n\
+             <div class=\"head\"><h3>{name}</h3></div>\n",
             colour(card.colour)
         );
         if !card.doubt.is_empty() {
@@ -182,7 +206,16 @@ impl Page {
                 escape(value)
             ));
         }
-        html.push_str("</dl>\n</article>\n");
+        html.push_str("</dl>\n");
+        if !card.sources.is_empty() {
+            let n = card.sources.len();
+            let title = format!(
+                "Where {} from",
+                if n == 1 { "it comes" } else { "they come" }
+            );
+            html.push_str(&listing(&title, &card.sources));
+        }
+        html.push_str("</article>\n");
         html
     }
 }
@@ -201,6 +234,51 @@ impl Figure {
 fn paragraphs(texts: &[String]) -> String {
     let paragraph = |text: &String| format!("<p>{}</p>\n", escape(text));
     texts.iter().map(paragraph).collect()
+}
+
+/// A list of excerpts that is opened by who wants it. What the stage shows is a link that plays it there.
+fn listing(title: &str, excerpts: &[Excerpt]) -> String {
+    let names: Vec<&str> = excerpts.iter().map(|e| e.motion.as_str()).collect();
+    let mut html = format!(
+        "<details class=\"listing\">\n<summary>{}</summary>\n<ol>\n",
+        escape(title)
+    );
+    for (excerpt, short) in excerpts.iter().zip(short_names(&names)) {
+        let Excerpt {
+            start, end, take, ..
+        } = excerpt;
+        let text = format!(
+            "{} <small>{start:.2}\u{2013}{end:.2} s</small>",
+            escape(&short)
+        );
+        let name = escape(&excerpt.motion);
+        html.push_str(&match take {
+            Some(take) => format!(
+                "<li><a href=\"#stage\" data-take=\"{take}\" data-secs=\"{start:.3}\" title=\"{name}\">{text}</a></li>\n"
+            ),
+            None => format!("<li title=\"{name}\">{text}</li>\n"),
+        });
+    }
+    html.push_str("</ol>\n</details>\n");
+    html
+}
+
+/// Links to the cards of a section.
+fn index<'a>(cards: impl Iterator<Item = (usize, &'a Card)>, title: &str) -> String {
+    let link = |(number, card): (usize, &Card)| {
+        format!(
+            "<a href=\"#primitive-{number}\" style=\"--hue:{}\"{}>{}</a>\n",
+            colour(card.colour),
+            if card.doubt.is_empty() {
+                ""
+            } else {
+                " class=\"doubted\""
+            },
+            escape(&card.name)
+        )
+    };
+    let links: String = cards.map(link).collect();
+    format!("<nav class=\"index\" aria-label=\"{title}\">\n{links}</nav>\n")
 }
 
 /// The node of the grid nearest to where the sliders begin.
@@ -267,6 +345,7 @@ mod tests {
                     actors: vec![actor],
                     ..Take::default()
                 }],
+                vocabulary: String::new(),
                 primitives: vec![Card {
                     name: "<jab>".into(),
                     phases: 2,

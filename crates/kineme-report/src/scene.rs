@@ -16,6 +16,8 @@ pub struct Scene {
     pub takes: Vec<Take>,
     /// A card for each primitive.
     pub primitives: Vec<Card>,
+    /// The file of the primitives, as a command line names it, where they may be renamed, merged and removed; else empty.
+    pub vocabulary: String,
 }
 
 impl Scene {
@@ -174,7 +176,7 @@ pub struct Card {
     pub lattice: Places,
     /// Seconds from phase 0, as many as rows.
     pub clock: Floats,
-    /// Its exemplars, or the first of them.
+    /// Its exemplars, or some of them.
     pub exemplars: Vec<CardExemplar>,
     /// Their points: a row a phase, phases of an exemplar together.
     pub paths: Places,
@@ -182,6 +184,22 @@ pub struct Card {
     pub more: usize,
     /// Its flowfield, where there is one to show.
     pub flow: Option<Flow>,
+    /// Where all its exemplars come from; told by the page, not by what draws.
+    #[serde(skip)]
+    pub sources: Vec<Excerpt>,
+}
+
+/// A stretch of a motion.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Excerpt {
+    /// The motion's name.
+    pub motion: String,
+    /// From when, seconds.
+    pub start: f64,
+    /// Until when, seconds.
+    pub end: f64,
+    /// The take that shows it, an index into the scene's; `None` where none does.
+    pub take: Option<usize>,
 }
 
 /// A parameter of a primitive.

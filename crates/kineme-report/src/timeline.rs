@@ -5,7 +5,8 @@ use crate::palette::{COLOURS, colour, text_on};
 use crate::svg::{Anchor, LABEL, MARGIN, SMALL, Svg, Type, fitted, nothing, text_width};
 
 const WIDTH: f64 = 960.0;
-const NAMES: f64 = 170.0;
+/// Room for the recordings' names, pixels: as much as they need, within these.
+const NAMES: [f64; 2] = [64.0, 240.0];
 const STRIP: f64 = 18.0;
 const BEHAVIOR_STRIP: f64 = 15.0;
 const TOP: f64 = 44.0;
@@ -54,9 +55,12 @@ pub fn timeline(rows: &[Row], names: &[String]) -> String {
     }
     let left_out = shown.len().saturating_sub(LINES);
     let shown = &shown[..shown.len() - left_out];
-    let lines = broken(shown, names);
+    let widest = shown.iter().map(|(name, _)| text_width(name, LABEL.size));
+    let room = widest.fold(0.0, f64::max) + 10.0;
+    let room = room.clamp(NAMES[0], NAMES[1]);
+    let left = MARGIN + room;
+    let lines = broken(shown, names, WIDTH - MARGIN - left);
     let mut svg = Svg::new(WIDTH, 0.0, TITLE);
-    let left = MARGIN + NAMES;
     let time = Scale::new([0.0, lines.seconds], [left, WIDTH - MARGIN]);
     let with_behaviors = shown
         .iter()
@@ -73,7 +77,7 @@ pub fn timeline(rows: &[Row], names: &[String]) -> String {
     for (i, line) in lines.lines.iter().enumerate() {
         let y = TOP + i as f64 * pitch;
         let label = if line.begin > 0.0 { SMALL } else { LABEL };
-        let name = fitted(&line.label, label.size, NAMES - 10.0);
+        let name = fitted(&line.label, label.size, room - 10.0);
         svg.text(left - 8.0, y + 13.0, Anchor::End, label, &name);
         for piece in &line.pieces {
             draw_piece(&mut svg, &time, y, piece, names, prefix);
@@ -112,7 +116,7 @@ struct Piece<'a> {
     group: Option<usize>,
 }
 
-fn broken<'a>(recordings: &[(&'a str, Vec<&'a Span>)], names: &[String]) -> Lines<'a> {
+fn broken<'a>(recordings: &[(&'a str, Vec<&'a Span>)], names: &[String], width: f64) -> Lines<'a> {
     let length = |spans: &[&Span]| spans.iter().map(|s| s.end).fold(0.0, f64::max);
     let longest = recordings
         .iter()
@@ -124,7 +128,7 @@ fn broken<'a>(recordings: &[(&'a str, Vec<&'a Span>)], names: &[String]) -> Line
         .collect();
     lengths.sort_by(f64::total_cmp);
     let middle = lengths.get(lengths.len() / 2).copied().unwrap_or(1.0);
-    let mut seconds = middle * (WIDTH - 2.0 * MARGIN - NAMES) / READABLE;
+    let mut seconds = middle * width / READABLE;
     let count = |seconds: f64| -> f64 {
         recordings
             .iter()

@@ -123,6 +123,35 @@ fn every_segment_is_a_mark_in_every_view() {
 }
 
 #[test]
+fn on_one_dimension_every_group_has_a_row_of_its_own() {
+    let made = made_up(5, 90);
+    let clustered = made.groups.iter().flatten().count();
+    let line: Vec<Vec<f64>> = made.points.iter().map(|p| p[..1].to_vec()).collect();
+    let svg = embedding(&Embedding {
+        points: &line,
+        ..embedded(&made)
+    });
+    assert_eq!(check(&svg, element("path")), clustered);
+    assert_eq!(check(&svg, element("circle")), 90 - clustered);
+    let read = roxmltree::Document::parse(&svg).expect("XML");
+    let heights = |name: &str| {
+        let texts = read.descendants().filter(|n| n.has_tag_name("text"));
+        let of = texts.filter(|n| {
+            n.text()
+                .is_some_and(|t| t.starts_with(&format!("{name} (")))
+        });
+        of.filter_map(|n| n.attribute("y").map(str::to_owned))
+            .collect::<Vec<_>>()
+    };
+    let mut rows: Vec<String> = made.names.iter().flat_map(|name| heights(name)).collect();
+    rows.extend(heights("unclustered"));
+    assert_eq!(rows.len(), 6);
+    rows.sort();
+    rows.dedup();
+    assert_eq!(rows.len(), 6, "no two on one height");
+}
+
+#[test]
 fn what_cannot_be_drawn_is_counted_and_does_no_harm() {
     let points = [
         vec![0.0, 1.0],

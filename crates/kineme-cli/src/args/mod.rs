@@ -277,8 +277,9 @@ pub struct DeriveArgs {
 
 /// See it work, on motion that comes with it
 ///
-/// Derives a vocabulary from a choreographed session of eight movements, says what it found and how well that matches
-/// what was choreographed, and writes the vocabulary and a page of figures.
+/// Primitives of written exemplars move two bodies through a routine and a bout of sparring; what the bodies do is
+/// recognised by the same primitives; a session of eight movements is cut and grouped by itself, and compared with what
+/// was choreographed. Writes a page on which all of it moves, and the vocabularies and plans to go on with.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:

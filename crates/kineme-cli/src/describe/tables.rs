@@ -3,6 +3,7 @@
 use kineme::interpolation::Method;
 use kineme::primitive::{LeaveOneOut, ParameterSource, Trial};
 use kineme::{Exemplar, Primitive, Vocabulary};
+use kineme_paper::figures::counted;
 
 use super::{calibrated, durations, short};
 use crate::table::{Side, aligned};
@@ -61,8 +62,9 @@ pub(super) fn tables(vocabulary: &Vocabulary, name: &str) -> String {
     let exemplars: usize = primitives.iter().map(|p| p.exemplars().len()).sum();
     let derived = primitives.iter().any(|p| p.group().is_some());
     let mut text = format!(
-        "{name}: {} of {exemplars} exemplars, body {}\n\n",
+        "{name}: {} of {}, body {}\n\n",
         counted(primitives.len(), "primitive"),
+        counted(exemplars, "exemplar"),
         vocabulary.body().name()
     );
     let mut header = vec![
@@ -168,10 +170,6 @@ fn recognition(vocabulary: &Vocabulary) -> String {
         names => format!("calibrated for {}", names.join(" and ")),
     };
     format!("\nrecognition: {told}\n")
-}
-
-fn counted(n: usize, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 /// All there is to tell of a primitive.

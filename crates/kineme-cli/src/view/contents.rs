@@ -2,9 +2,12 @@
 
 use kineme::retargeting::RoleMap;
 use kineme::{Motion, Recording, Vocabulary};
-use kineme_paper::scene::{CardBudget, Shape, Shown, actor, actor_of_recording, cards};
+use kineme_paper::figures::counted;
+use kineme_paper::scene::{
+    CardBudget, HOW_TO_READ, Shape, Shown, actor, actor_of_recording, cards,
+};
 use kineme_report::scene::{Scene, Take};
-use kineme_report::{Page, Section, Table};
+use kineme_report::{Page, Section, Table, short_names};
 
 use crate::args::ViewArgs;
 use crate::bodies;
@@ -75,9 +78,10 @@ fn page_of(taken: &[Taken]) -> Page {
     let sizes: Vec<(f64, usize)> = taken.iter().map(size).collect();
     let shown = Shown::within(BYTES, &sizes);
     let mut scene = Scene::default();
-    for t in &taken[..shown.takes] {
+    let names: Vec<&str> = taken.iter().map(|t| t.recording.name()).collect();
+    for (t, name) in taken.iter().zip(short_names(&names)).take(shown.takes) {
         let take = take(&mut scene, t, shown.rate_hz);
-        scene.takes.push(take);
+        scene.takes.push(Take { name, ..take });
     }
     let title = match taken {
         [one] => one.recording.name().to_owned(),
@@ -186,8 +190,10 @@ pub fn of_vocabulary(vocabulary: &Vocabulary, name: &str) -> Result<Page, Failur
     };
     let (cards, left_out) = cards(&mut scene, vocabulary, &budget)?;
     scene.primitives = cards;
+    scene.vocabulary = name.into();
     let section = Section {
         title: "Primitives".into(),
+        text: vec![HOW_TO_READ.into()],
         cards: 0..scene.primitives.len(),
         ..Section::default()
     };
@@ -197,15 +203,8 @@ pub fn of_vocabulary(vocabulary: &Vocabulary, name: &str) -> Result<Page, Failur
         .iter()
         .map(|p| p.exemplars().len())
         .sum();
-    let counted = |n: usize, what: &str| {
-        if n == 1 {
-            format!("1 {what}")
-        } else {
-            format!("{n} {what}s")
-        }
-    };
     let mut summary = vec![format!(
-        "{} of {} of the body {}. Each moves as f(p, phase): the parameters p are on the sliders.",
+        "{} of {}, of the body {}.",
         counted(all, "primitive"),
         counted(exemplars, "exemplar"),
         vocabulary.body().name()

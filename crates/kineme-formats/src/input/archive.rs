@@ -106,7 +106,13 @@ impl Handles {
         work: impl FnOnce(&mut ZipArchive<BufReader<File>>) -> std::result::Result<T, ZipError>,
     ) -> Result<T> {
         let failed = |e: ZipError| {
-            FormatError::new(shown, Place::File, e.to_string(), "a readable zip archive")
+            let found = match &e {
+                ZipError::Io(e) => crate::told(e),
+                // Its table of contents stands at its end.
+                ZipError::InvalidArchive(_) => "an archive that is damaged or was cut off".into(),
+                other => other.to_string(),
+            };
+            FormatError::new(shown, Place::File, found, "a readable zip archive")
         };
         let kept = {
             let mut open = self.0.lock().unwrap_or_else(PoisonError::into_inner);

@@ -109,12 +109,8 @@ impl Entry {
 
     fn parse(&self, bytes: &[u8]) -> Result<Recording> {
         let Some(kind) = self.kind else {
-            return Err(FormatError::new(
-                &self.name,
-                Place::File,
-                "no motion format",
-                "BVH, AMC, DeepMimic JSON, a position or joint-angle table, or MSR-Action3D text",
-            ));
+            let (found, expected) = detect::unknown(bytes);
+            return Err(FormatError::new(&self.name, Place::File, found, expected));
         };
         let skeleton = match (&self.skeleton, kind) {
             (Some((name, place)), _) => Some(crate::asf::parse(
@@ -144,7 +140,7 @@ impl Location {
                 let mut bytes = Vec::new();
                 std::fs::File::open(path)
                     .and_then(|file| file.take(most.unwrap_or(u64::MAX)).read_to_end(&mut bytes))
-                    .map_err(|e| lost(shown, e.to_string(), "a readable file"))?;
+                    .map_err(|e| lost(shown, crate::told(&e), "a readable file"))?;
                 Ok(bytes)
             }
             Location::Packed(archive, file) => {

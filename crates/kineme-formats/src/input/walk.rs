@@ -48,7 +48,7 @@ impl Walk {
                     self.archive(archive, &shown_parent(&shown, &inner), &inner)
                 }
                 None => {
-                    let why = lost(&shown, e.to_string(), "a file, a folder or an archive");
+                    let why = lost(&shown, crate::told(&e), "a file, a folder or an archive");
                     self.lose(&shown, why);
                 }
             },
@@ -67,7 +67,7 @@ impl Walk {
                 self.push("-".into(), kind, Location::Held(bytes.into()));
             }
             Err(e) => {
-                let why = lost("-", e.to_string(), "readable standard input");
+                let why = lost("-", crate::told(&e), "readable standard input");
                 self.lose("-", why);
             }
         }
@@ -85,7 +85,7 @@ impl Walk {
         let (real, names) = match listed {
             Ok(listed) => listed,
             Err(e) => {
-                let why = lost(shown, e.to_string(), "a readable folder");
+                let why = lost(shown, crate::told(&e), "a readable folder");
                 return self.lose(shown, why);
             }
         };

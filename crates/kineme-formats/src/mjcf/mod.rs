@@ -124,7 +124,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
     let refused = |found: String, expected: &str| {
         FormatError::new(path.display().to_string(), Place::File, found, expected)
     };
-    let unread = |e: std::io::Error| refused(e.to_string(), "a file that can be read");
+    let unread = |e: std::io::Error| refused(crate::told(&e), "a file that can be read");
     let length = std::fs::metadata(path).map_err(unread)?.len();
     if length > LARGEST {
         return Err(refused(

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 
 use safetensors::tensor::Metadata;
-use safetensors::{Dtype, SafeTensors, View};
+use safetensors::{Dtype, SafeTensorError, SafeTensors, View};
 use serde::{Deserialize, Serialize};
 
 use super::check::Flaw;
@@ -115,10 +115,32 @@ fn refusal(name: &str, (found, expected): Flaw) -> FormatError {
     FormatError::new(name, Place::File, found, expected)
 }
 
+/// Why bytes are no container: what was cut off begins as one.
+fn unreadable(bytes: &[u8], error: &SafeTensorError) -> String {
+    match error {
+        _ if bytes.is_empty() => "an empty file".into(),
+        SafeTensorError::InvalidHeaderLength if bytes.get(8) == Some(&b'{') => {
+            "a file that was cut off".into()
+        }
+        SafeTensorError::MetadataIncompleteBuffer => {
+            "a file of another length than its header says".into()
+        }
+        SafeTensorError::HeaderTooSmall
+        | SafeTensorError::HeaderTooLarge
+        | SafeTensorError::InvalidHeaderLength
+        | SafeTensorError::InvalidHeader(_) => "another kind of file".into(),
+        other => other.to_string(),
+    }
+}
+
 /// What the container holds, its parts in agreement but not yet checked by themselves.
 fn read(bytes: &[u8]) -> std::result::Result<VocabularyFile, Flaw> {
-    let (header, metadata) = SafeTensors::read_metadata(bytes)
-        .map_err(|e| (e.to_string(), "a safetensors container".to_string()))?;
+    let (header, metadata) = SafeTensors::read_metadata(bytes).map_err(|e| {
+        (
+            unreadable(bytes, &e),
+            "a vocabulary (a safetensors container)".to_string(),
+        )
+    })?;
     let json = metadata
         .metadata()
         .as_ref()

@@ -450,11 +450,11 @@ fn damaged_files_are_refused() {
     let mut huge = good.clone();
     huge[6] = 0xff;
     let cases: &[(&str, Vec<u8>, &str)] = &[
-        ("empty", Vec::new(), "header"),
-        ("cut", good[..good.len() - 1].to_vec(), "incomplete"),
-        ("cut header", good[..40].to_vec(), "header"),
-        ("huge header", huge, "header"),
-        ("longer", [good.as_slice(), b"x"].concat(), "incomplete"),
+        ("empty", Vec::new(), "an empty file"),
+        ("cut", good[..good.len() - 1].to_vec(), "another length"),
+        ("cut header", good[..40].to_vec(), "cut off"),
+        ("huge header", huge, "another kind of file"),
+        ("longer", [good.as_slice(), b"x"].concat(), "another length"),
         ("one bit", flipped, "BLAKE3"),
         (
             "no JSON",

@@ -3,7 +3,7 @@
 use kineme::primitive::{ParameterSource, Sample};
 use kineme::{Primitive, Root, Vocabulary};
 use kineme_report::LOW_COHERENCE;
-use kineme_report::scene::{Axis, Card, CardExemplar, Floats, Places, Scene};
+use kineme_report::scene::{Axis, Card, CardExemplar, Excerpt, Floats, Places, Scene};
 use nalgebra::{Rotation2, Vector2, Vector3};
 use rayon::prelude::*;
 
@@ -24,10 +24,16 @@ impl Default for CardBudget {
     fn default() -> Self {
         Self {
             bytes: 5_000_000,
-            exemplars: 8,
+            // A grid of three by three, as choreographies have it.
+            exemplars: 9,
         }
     }
 }
+
+/// How a card is read: what stands above the cards of primitives.
+pub const HOW_TO_READ: &str = "Left: the exemplars, one over the other. Right: f(p, \u{3c4}), their blend at the \
+     parameters p of the sliders, whose marks are the exemplars. Left-out error: how far the wrists miss an exemplar, \
+     on average, that is predicted from the others.";
 
 /// Nodes along each axis of the grid that are tried, for one, two and three parameters.
 const NODES: [&[usize]; 3] = [&[9, 5, 3], &[6, 5, 4, 3], &[4, 3]];
@@ -56,7 +62,10 @@ pub fn cards(
         .enumerate()
         .map(|(i, primitive)| {
             let card = card(primitive, &shape, &each)?;
+            let mut facts = card.facts;
+            facts.extend(behavior(vocabulary, primitive.name()));
             Ok(Card {
+                facts,
                 colour: i,
                 body,
                 ..card
@@ -85,7 +94,9 @@ fn card(primitive: &Primitive, shape: &Shape, budget: &CardBudget) -> kineme::Re
         sampled.add(primitive, shape, phases, |phase| course.sample(phase));
     }
     let mut exemplary = Sampled::default();
-    for i in 0..shown {
+    // Spread over all of them: those that stand together in a list are often of one person.
+    let chosen: Vec<usize> = (0..shown).map(|k| k * exemplars / shown).collect();
+    for &i in &chosen {
         exemplary.add(primitive, shape, phases, |phase| {
             primitive.registered(i, phase)
         });
@@ -103,10 +114,11 @@ fn card(primitive: &Primitive, shape: &Shape, budget: &CardBudget) -> kineme::Re
         phases,
         lattice: Places::pack(&sampled.places),
         clock: Floats::pack(sampled.clock),
-        exemplars: (0..shown).map(|i| exemplar(primitive, i)).collect(),
+        exemplars: chosen.iter().map(|&i| exemplar(primitive, i)).collect(),
         paths: Places::pack(&exemplary.places),
         more: exemplars - shown,
         flow,
+        sources: (0..exemplars).map(|i| source(primitive, i)).collect(),
         ..Card::default()
     })
 }
@@ -220,6 +232,16 @@ fn exemplar(primitive: &Primitive, i: usize) -> CardExemplar {
     }
 }
 
+fn source(primitive: &Primitive, i: usize) -> Excerpt {
+    let from = &primitive.exemplars()[i].provenance;
+    Excerpt {
+        motion: from.motion.clone(),
+        start: from.start_secs,
+        end: from.end_secs,
+        take: None,
+    }
+}
+
 /// What is known of a primitive, in a few words each.
 fn facts(primitive: &Primitive, secs: f64) -> Vec<[String; 2]> {
     let mut facts = Vec::new();
@@ -227,31 +249,46 @@ fn facts(primitive: &Primitive, secs: f64) -> Vec<[String; 2]> {
     let kind = if primitive.is_cyclic() {
         "cycle"
     } else {
-        "stroke"
+        "length"
     };
-    fact("kind", format!("{kind} of {secs:.2} s"));
-    fact("exemplars", primitive.exemplars().len().to_string());
-    if let Some(group) = primitive.group() {
-        fact("segments in the group", group.members.to_string());
-        if let Some(coherence) = group.coherence {
-            fact("coherence", format!("{coherence:.2}"));
-        }
+    fact(kind, format!("{secs:.2} s"));
+    let exemplars = primitive.exemplars().len();
+    let group = primitive.group();
+    match group.filter(|g| g.members != exemplars) {
+        Some(group) => fact(
+            "exemplars",
+            format!("{exemplars} of {} segments", group.members),
+        ),
+        None => fact("exemplars", exemplars.to_string()),
+    }
+    if let Some(coherence) = group.and_then(|g| g.coherence) {
+        fact("coherence", format!("{coherence:.2}"));
     }
     if let Some(error) = &primitive.fitted().error {
         let cm = 100.0 * error.wrist_m;
-        fact("wrists from the other exemplars", format!("{cm:.1} cm"));
+        fact("left-out error", format!("{cm:.1} cm"));
     }
     facts
+}
+
+/// Which primitives alternate with one.
+fn behavior(vocabulary: &Vocabulary, name: &str) -> Option<[String; 2]> {
+    let mut behaviors = vocabulary.behaviors().iter();
+    let of =
+        behaviors.find(|b| b.primitives.len() > 1 && b.primitives.iter().any(|p| p == name))?;
+    let others = of.primitives.iter().filter(|p| *p != name);
+    let others: Vec<&str> = others.map(String::as_str).collect();
+    Some([
+        "alternates with".into(),
+        format!("{} ({})", others.join(", "), of.name),
+    ])
 }
 
 /// Why a group may be one that nobody meant.
 fn doubt(primitive: &Primitive) -> String {
     let coherence = primitive.group().and_then(|g| g.coherence);
     match coherence.filter(|c| *c < LOW_COHERENCE) {
-        Some(c) => format!(
-            "Perhaps a group that nobody meant: its coherence is {c:.2}; its segments are not much more like one \
-             another than like others."
-        ),
+        Some(_) => "low coherence: perhaps a mixture".into(),
         None => String::new(),
     }
 }

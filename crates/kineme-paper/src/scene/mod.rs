@@ -9,7 +9,7 @@ mod flow;
 mod shows;
 mod takes;
 
-pub use cards::{CardBudget, cards};
+pub use cards::{CardBudget, HOW_TO_READ, cards};
 pub use flesh::Shape;
 pub use shows::{take_of_performance, takes_of_show};
 pub use takes::{Shown, actor, actor_of_recording, spans, take_of_derived, thinned};

@@ -1,8 +1,8 @@
 //! A made-up scene: a simple body that waves, with everything that a page can show of it.
 
 use kineme_report::scene::{
-    Actor, Axis, Body, Bone, Card, CardExemplar, Class, Floats, Flow, Places, Scene, Shares,
-    Stretch, Take, Track,
+    Actor, Axis, Body, Bone, Card, CardExemplar, Class, Excerpt, Floats, Flow, Places, Scene,
+    Shares, Stretch, Take, Track,
 };
 
 const SECS: f64 = 6.0;
@@ -177,13 +177,13 @@ fn card(name: &str, colour: usize) -> Card {
     Card {
         name: name.into(),
         facts: vec![
-            ["kind".into(), "stroke of 1.2 s".into()],
+            ["length".into(), "1.20 s".into()],
             ["coherence".into(), "0.41".into()],
         ],
         doubt: if colour == 0 {
             String::new()
         } else {
-            "Perhaps a group that nobody meant.".into()
+            "low coherence: perhaps a mixture".into()
         },
         colour,
         axes: vec![Axis {
@@ -212,6 +212,20 @@ fn card(name: &str, colour: usize) -> Card {
             lattice: flow(&nodes),
             exemplars: flow(&exemplars),
         }),
+        sources: vec![
+            Excerpt {
+                motion: "takes/</a> & one.bvh".into(),
+                start: 1.5,
+                end: 2.75,
+                take: Some(1),
+            },
+            Excerpt {
+                motion: "takes/elsewhere.bvh".into(),
+                start: 0.0,
+                end: 1.0,
+                take: None,
+            },
+        ],
         ..Card::default()
     }
 }
@@ -228,5 +242,6 @@ pub fn scene() -> Scene {
         bodies: vec![body()],
         takes: vec![take(), other],
         primitives: vec![card("wave", 0), card("<wave> too", 1)],
+        vocabulary: "made up.kineme".into(),
     }
 }

@@ -216,9 +216,9 @@ impl Derivation {
         let (embedding, geodesics) = embed(&graph, &EmbedOptions::default())?;
         if !embedding.synthetic_edges.is_empty() {
             notes.push(format!(
-                "the neighbourhood graph had {} components, joined by {} synthetic edges",
-                1 + embedding.components.iter().max().unwrap_or(&0),
-                embedding.synthetic_edges.len()
+                "the graph of neighbours fell into {} parts, which were joined where they are nearest; how far apart \
+                 they lie in the embedding says little",
+                1 + embedding.components.iter().max().unwrap_or(&0)
             ));
         }
         watch(Stage::Clustering);
