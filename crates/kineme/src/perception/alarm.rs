@@ -19,9 +19,9 @@ pub struct AlarmSettings {
 impl Default for AlarmSettings {
     fn default() -> Self {
         Self {
-            memory_secs: 0.2,
-            raise: 0.6,
-            release: 0.3,
+            memory_secs: 0.1,
+            raise: 0.5,
+            release: 0.2,
         }
     }
 }

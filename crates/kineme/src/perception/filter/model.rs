@@ -17,6 +17,10 @@ use crate::primitive::Vocabulary;
 /// A joint this far beyond where any exemplar had it cannot be believed, radians.
 const TOLERANCE_RAD: f64 = 0.5;
 
+/// In a stream of people, evidence counts so much of what the settings say: how somebody differs from the exemplars
+/// lasts, so that a moment tells little that the one before it did not.
+const LASTING: f64 = 0.14;
+
 /// Rows and what is needed to compare moments with them.
 #[derive(Debug, Clone)]
 pub(super) struct Model {
@@ -51,8 +55,18 @@ impl Model {
             bounds.join(&range);
         }
         let covariance = covariance(vocabulary, &rows, &features, &layout.still());
+        // Half of the first moments' posture taken off, a body is not where the manifold has it.
+        let tangents = match offset {
+            true => None,
+            false => tangents(vocabulary, &rows, &features, dims)?,
+        };
+        // Evidence of clips gets its temperature as a whole; that of the manifold itself is no matter of people.
+        let share = match offset || tangents.is_some() {
+            true => 1.0,
+            false => LASTING,
+        };
         let [hands, body] = layout.parts();
-        let trusts = [settings.hands_trust, settings.body_trust];
+        let trusts = [settings.hands_trust, settings.body_trust].map(|t| share * t);
         let parts: Vec<Part> = [hands, body]
             .into_iter()
             .zip(trusts)
@@ -66,11 +80,6 @@ impl Model {
                 directions: settings.directions,
             })
             .collect();
-        // Half of the first moments' posture taken off, a body is not where the manifold has it.
-        let tangents = match offset {
-            true => None,
-            false => tangents(vocabulary, &rows, &features, dims)?,
-        };
         Ok(Self {
             tangents,
             layout,
@@ -85,6 +94,11 @@ impl Model {
     /// How well moments fit the rows without the numbers that are unknown: the Gaussian's marginal.
     pub fn without(&self, unknown: &[bool]) -> Result<Emission> {
         Emission::new(&self.parts, &self.features, self.layout.dims(), unknown)
+    }
+
+    /// Whether moments can be compared with the manifold itself.
+    pub fn has_manifold(&self) -> bool {
+        self.tangents.is_some()
     }
 
     /// How well moments fit the manifold itself when certain numbers are unknown, where that can be told.
