@@ -35,6 +35,8 @@ pub(super) struct Model {
     parts: Vec<Part>,
     /// What varies around the rows' moments, where that is known.
     tangents: Option<Tangents>,
+    /// How much evidence counts of what the settings say; `None`: all, as nobody's manner of moving lasts in it.
+    pub lasting: Option<f64>,
 }
 
 impl Model {
@@ -61,10 +63,8 @@ impl Model {
             false => tangents(vocabulary, &rows, &features, dims)?,
         };
         // Evidence of clips gets its temperature as a whole; that of the manifold itself is no matter of people.
-        let share = match offset || tangents.is_some() {
-            true => 1.0,
-            false => LASTING,
-        };
+        let lasting = (!offset && tangents.is_none()).then_some(LASTING);
+        let share = lasting.unwrap_or(1.0);
         let [hands, body] = layout.parts();
         let trusts = [settings.hands_trust, settings.body_trust].map(|t| share * t);
         let parts: Vec<Part> = [hands, body]
@@ -82,6 +82,7 @@ impl Model {
             .collect();
         Ok(Self {
             tangents,
+            lasting,
             layout,
             rows,
             bounds,
@@ -94,11 +95,6 @@ impl Model {
     /// How well moments fit the rows without the numbers that are unknown: the Gaussian's marginal.
     pub fn without(&self, unknown: &[bool]) -> Result<Emission> {
         Emission::new(&self.parts, &self.features, self.layout.dims(), unknown)
-    }
-
-    /// Whether moments can be compared with the manifold itself.
-    pub fn has_manifold(&self) -> bool {
-        self.tangents.is_some()
     }
 
     /// How well moments fit the manifold itself when certain numbers are unknown, where that can be told.
