@@ -4,8 +4,8 @@ use super::chain::Kernel;
 use super::rows::Row;
 use crate::primitive::Vocabulary;
 
-/// Chances a second: to break a movement off (people hardly do), to begin one from rest, to begin one from unknown movement, and to go
-/// between rest and unknown movement.
+/// Chances a second: to break a movement off (people hardly do), to begin one from rest, to begin one from unknown
+/// movement, and to go between rest and unknown movement.
 const LEAVE: f64 = 0.05;
 const LEAVE_EXACT: f64 = 0.3;
 const BEGIN: f64 = 2.0;
