@@ -11,8 +11,7 @@ use crate::skeleton::Root;
 /// How a session goes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SessionSettings {
-    /// When what is watched is worth an answer. Quicker than an alarm by itself is: a wrong answer costs a movement, a
-    /// late one a blow.
+    /// When what is watched is worth an answer. Surer than an alarm by itself is: a wrong answer costs a movement.
     pub alarm: AlarmSettings,
 }
 
@@ -20,7 +19,8 @@ impl Default for SessionSettings {
     fn default() -> Self {
         Self {
             alarm: AlarmSettings {
-                memory_secs: 0.1,
+                raise: 0.6,
+                release: 0.3,
                 ..AlarmSettings::default()
             },
         }

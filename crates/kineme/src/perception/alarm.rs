@@ -19,9 +19,9 @@ pub struct AlarmSettings {
 impl Default for AlarmSettings {
     fn default() -> Self {
         Self {
-            memory_secs: 0.2,
-            raise: 0.6,
-            release: 0.3,
+            memory_secs: 0.1,
+            raise: 0.5,
+            release: 0.2,
         }
     }
 }
@@ -140,8 +140,9 @@ mod tests {
     #[test]
     fn a_moment_raises_no_alarm_and_a_moment_of_doubt_ends_none() {
         let settings = AlarmSettings::default();
+        let needed = -settings.memory_secs * (1.0 - settings.raise).ln();
         let flashes: Vec<f64> = (0..10)
-            .flat_map(|_| [run(1.0, 0.1), run(0.0, 0.4)].concat())
+            .flat_map(|_| [run(1.0, 0.5 * needed), run(0.0, 0.4)].concat())
             .collect();
         assert!(heard(&flashes, &settings).iter().all(Option::is_none));
         let doubted = [run(1.0, 1.0), run(0.0, 0.1), run(1.0, 0.5)].concat();

@@ -17,6 +17,10 @@ use crate::primitive::Vocabulary;
 /// A joint this far beyond where any exemplar had it cannot be believed, radians.
 const TOLERANCE_RAD: f64 = 0.5;
 
+/// In a stream of people, evidence counts so much of what the settings say: how somebody differs from the exemplars
+/// lasts, so that a moment tells little that the one before it did not.
+const LASTING: f64 = 0.14;
+
 /// Rows and what is needed to compare moments with them.
 #[derive(Debug, Clone)]
 pub(super) struct Model {
@@ -31,6 +35,8 @@ pub(super) struct Model {
     parts: Vec<Part>,
     /// What varies around the rows' moments, where that is known.
     tangents: Option<Tangents>,
+    /// How much evidence counts of what the settings say; `None`: all, as nobody's manner of moving lasts in it.
+    pub lasting: Option<f64>,
 }
 
 impl Model {
@@ -51,8 +57,16 @@ impl Model {
             bounds.join(&range);
         }
         let covariance = covariance(vocabulary, &rows, &features, &layout.still());
+        // Half of the first moments' posture taken off, a body is not where the manifold has it.
+        let tangents = match offset {
+            true => None,
+            false => tangents(vocabulary, &rows, &features, dims)?,
+        };
+        // Evidence of clips gets its temperature as a whole; that of the manifold itself is no matter of people.
+        let lasting = (!offset && tangents.is_none()).then_some(LASTING);
+        let share = lasting.unwrap_or(1.0);
         let [hands, body] = layout.parts();
-        let trusts = [settings.hands_trust, settings.body_trust];
+        let trusts = [settings.hands_trust, settings.body_trust].map(|t| share * t);
         let parts: Vec<Part> = [hands, body]
             .into_iter()
             .zip(trusts)
@@ -66,13 +80,9 @@ impl Model {
                 directions: settings.directions,
             })
             .collect();
-        // Half of the first moments' posture taken off, a body is not where the manifold has it.
-        let tangents = match offset {
-            true => None,
-            false => tangents(vocabulary, &rows, &features, dims)?,
-        };
         Ok(Self {
             tangents,
+            lasting,
             layout,
             rows,
             bounds,

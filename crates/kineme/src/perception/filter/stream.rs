@@ -18,6 +18,9 @@ use crate::primitive::{Listener, Observation, Observations, Posterior, Reading};
 
 /// Displacements count so much more at rest, where a body stays within half of what people differ by in movement.
 const STILL: f64 = 4.0;
+/// Among people, so many times what a moment costs that fits as well as any does is taken off unknown movement a second:
+/// beginning a movement has its price at once, and evidence that counts little would be late to pay it.
+const STRANGE: f64 = 2.4;
 /// A longer time between two looks is taken for so much, seconds.
 const LONGEST_SECS: f64 = 0.25;
 /// Looks gone back over at a time.
@@ -168,7 +171,12 @@ impl<'a> Stream<'a> {
         // At rest the displacements are nothing, and the posture may be any: it fits as postures usually do.
         let posture = (all.usual_cost() - displacements.usual_cost()).max(0.0);
         let rest = dt * (STILL * displacements.fit_to_zero(feature) - posture);
-        let none = dt * (self.fit.broad + self.filter.learned.unknown_per_sec);
+        let unknown = self.filter.learned.unknown_per_sec;
+        let unknown = match self.filter.stream.lasting {
+            None => unknown,
+            Some(share) => share * unknown - STRANGE * all.usual_cost(),
+        };
+        let none = dt * (self.fit.broad + unknown);
         let mut exactly = None;
         if let Some(exact) = exact {
             exact.fit(feature, &mut self.exact);

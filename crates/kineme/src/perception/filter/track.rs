@@ -4,9 +4,10 @@ use super::chain::Kernel;
 use super::rows::Row;
 use crate::primitive::Vocabulary;
 
-/// Chances a second: to break a movement off, to begin one from rest, to begin one from unknown movement, and to go
-/// between rest and unknown movement.
-const LEAVE: f64 = 0.3;
+/// Chances a second: to break a movement off (people hardly do), to begin one from rest, to begin one from unknown
+/// movement, and to go between rest and unknown movement.
+const LEAVE: f64 = 0.05;
+const LEAVE_EXACT: f64 = 0.3;
 const BEGIN: f64 = 2.0;
 /// The same of a movement that has ended, where the body need not stand still afterwards.
 const ENDED: f64 = 20.0;
@@ -64,7 +65,8 @@ impl Network {
             let even = 1.0 / row.progress.len() as f64;
             let share = |k: usize| ((1.0 - ANYWHERE) * near(k) / sum + ANYWHERE * even) / count;
             entry.extend(moments.clone().map(share));
-            leave.extend(moments.map(|k| if still(k) { ENDED } else { LEAVE }));
+            let broken_off = if exact { LEAVE_EXACT } else { LEAVE };
+            leave.extend(moments.map(|k| if still(k) { ENDED } else { broken_off }));
             starts.push(entry.len());
         }
         let transitions = vocabulary.transitions();
