@@ -4,10 +4,11 @@ use super::chain::Kernel;
 use super::rows::Row;
 use crate::primitive::Vocabulary;
 
-/// Chances a second: to break a movement off (people hardly do), to begin one from rest, to begin one from unknown
-/// movement, and to go between rest and unknown movement.
-const LEAVE: f64 = 0.05;
-const LEAVE_EXACT: f64 = 0.3;
+/// Chances a second: to break a movement off, to begin one from rest, to begin one from unknown movement, and to go
+/// between rest and unknown movement.
+const LEAVE: f64 = 0.3;
+/// People hardly break off what has an end; what goes round and round ends no other way.
+const LEAVE_PEOPLE: f64 = 0.05;
 const BEGIN: f64 = 2.0;
 /// The same of a movement that has ended, where the body need not stand still afterwards.
 const ENDED: f64 = 20.0;
@@ -45,8 +46,9 @@ pub(super) struct Mass {
 }
 
 impl Network {
-    /// `exact`: movements follow one another without standing still between them, unless the body rests.
-    pub fn new(vocabulary: &Vocabulary, rows: &[Row], exact: bool) -> Self {
+    /// `exact`: movements follow one another without standing still between them, unless the body rests. `people`: of
+    /// what is seen nobody follows the primitives themselves.
+    pub fn new(vocabulary: &Vocabulary, rows: &[Row], exact: bool, people: bool) -> Self {
         let n = vocabulary.primitives().len();
         let mut starts = vec![0];
         let mut entry = Vec::new();
@@ -65,7 +67,10 @@ impl Network {
             let even = 1.0 / row.progress.len() as f64;
             let share = |k: usize| ((1.0 - ANYWHERE) * near(k) / sum + ANYWHERE * even) / count;
             entry.extend(moments.clone().map(share));
-            let broken_off = if exact { LEAVE_EXACT } else { LEAVE };
+            let broken_off = match people && !row.cyclic {
+                true => LEAVE_PEOPLE,
+                false => LEAVE,
+            };
             leave.extend(moments.map(|k| if still(k) { ENDED } else { broken_off }));
             starts.push(entry.len());
         }
