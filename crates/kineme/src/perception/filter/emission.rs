@@ -136,10 +136,11 @@ impl Whitened {
         let factor = Cholesky::new(covariance)
             .ok_or_else(|| Error::invalid("the exemplars differ in no direction: no covariance"))?;
         let raw = DMatrix::from_fn(n, states, |i, s| features[s * dims + known[i]]);
-        let white = factor
+        let inverse = factor
             .l()
-            .solve_lower_triangular(&raw)
+            .solve_lower_triangular(&DMatrix::identity(n, n))
             .ok_or_else(|| Error::invalid("a covariance that cannot be inverted"))?;
+        let white = &inverse * raw;
         let mean = white.column_mean();
         let mut centred = white;
         for mut column in centred.column_iter_mut() {
@@ -149,10 +150,6 @@ impl Whitened {
         let kept = part.directions.clamp(1, n);
         spread.truncate(kept);
         let basis = directions.rows(0, kept).into_owned();
-        let inverse = factor
-            .l()
-            .solve_lower_triangular(&DMatrix::identity(n, n))
-            .ok_or_else(|| Error::invalid("a covariance that cannot be inverted"))?;
         let mean = &basis * mean;
         let mut reduced = &basis * centred;
         for mut column in reduced.column_iter_mut() {
