@@ -27,6 +27,11 @@ const ALIKE: f64 = 0.15;
 /// logarithms a second.
 const LEADING: usize = 8;
 const FAR_PER_SEC: f64 = 600.0;
+/// But for beginnings, a moment is worth comparing exactly if the wide measure, which knows displacements, has it this
+/// near to its best, in shares of what a moment usually costs.
+const WORTH: f64 = 0.5;
+/// Who goes back along a movement by so many deviations from one look to the next does not carry it out.
+const BACK: f64 = 0.3;
 
 /// What may vary around the moments of the rows: vectors in the features' numbers, each as long as one deviation.
 #[derive(Debug, Clone)]
@@ -35,6 +40,8 @@ pub(super) struct Tangents {
     pub count: usize,
     /// Of each state, count x dims; none where its primitive's parameters have no meaning.
     pub vectors: Vec<Option<Vec<f64>>>,
+    /// Whether a state lies so near to a beginning that displacements are of what came before.
+    pub beginning: Vec<bool>,
 }
 
 /// The densities of moments around the rows' moments, against that of movement anywhere.
@@ -53,6 +60,7 @@ pub(super) struct Exact {
     leading: Around,
     /// Logarithm of each state's determinant; none of states that are not compared.
     log_dets: Vec<Option<f64>>,
+    beginning: Vec<bool>,
 }
 
 /// Neighbourhoods of states: spheres that are long along the tangents.
@@ -106,6 +114,7 @@ impl Exact {
             leading: Around::of(variances.len().min(LEADING), tangents.count),
             variances: DVector::from_vec(variances),
             log_dets: Vec::with_capacity(count),
+            beginning: tangents.beginning.clone(),
             displaced: (0..dims).filter(|&i| !still[i] && !hidden(i)).collect(),
             known,
             mean,
@@ -138,8 +147,16 @@ impl Exact {
     }
 
     /// Logarithms of the densities a second around each state, less that of movement anywhere. Of states that are far
-    /// behind the best, bounds from above: those are told by the leading directions.
-    pub fn fit(&self, feature: &Feature, out: &mut Vec<f64>) {
+    /// behind the best, bounds from above: those are told by the leading directions. States along which the body went
+    /// back since a moment `before` are none that it is in, nor, but for beginnings, those that the wide measure (`wide`,
+    /// of which `usual` is what a moment usually costs) has far from its best: minus infinity.
+    pub fn fit(
+        &self,
+        feature: &Feature,
+        before: Option<&Feature>,
+        (wide, usual): (&[f64], f64),
+        out: &mut Vec<f64>,
+    ) {
         let values = self.known.iter().map(|&i| feature.values[i] / ACROSS_M);
         let off = DVector::from_iterator(self.known.len(), values) - &self.mean;
         let z = &self.basis * &off;
@@ -155,9 +172,20 @@ impl Exact {
         let log = |squared: f64, log_det: f64| {
             0.5 * TRUST_PER_SEC * (broad - outside - squared - log_det)
         };
+        let gone = before.filter(|b| b.unknown == feature.unknown).map(|b| {
+            let steps = self.known.iter().map(|&i| feature.values[i] - b.values[i]);
+            let steps = DVector::from_iterator(self.known.len(), steps.map(|d| d / ACROSS_M));
+            &self.basis.rows(0, leading) * steps
+        });
+        let nearest = wide.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let worth = |s: usize| self.beginning[s] || wide[s] >= nearest - WORTH * usual;
+        let back = |s: usize| {
+            let along = |gone: &DVector<f64>| self.leading.along_phase(gone.as_slice(), s);
+            gone.as_ref().is_some_and(|gone| along(gone) < -BACK)
+        };
         let bound = |(s, log_det): (usize, &Option<f64>)| match log_det {
-            Some(d) => log(self.leading.squared(&z[..leading], s), *d),
-            None => f64::NEG_INFINITY,
+            Some(d) if worth(s) && !back(s) => log(self.leading.squared(&z[..leading], s), *d),
+            _ => f64::NEG_INFINITY,
         };
         out.clear();
         out.extend(self.log_dets.iter().enumerate().map(bound));
@@ -201,6 +229,14 @@ impl Around {
         let u = l.solve_lower_triangular(&w).ok_or_else(none)?;
         self.states.extend_from_slice(u.transpose().as_slice());
         Ok(Some(2.0 * l.diagonal().iter().map(|d| d.ln()).sum::<f64>()))
+    }
+
+    /// How far a step goes along a state's tangent of phase.
+    fn along_phase(&self, step: &[f64], state: usize) -> f64 {
+        let d = self.directions;
+        let first = state * (1 + self.count) * d + d;
+        let tangent = &self.states[first..first + d];
+        step.iter().zip(tangent).map(|(x, u)| x * u).sum()
     }
 
     /// The squared distance of a point to a state.

@@ -38,7 +38,8 @@ pub(super) struct Stream<'a> {
     /// States of a body that stands still.
     still: Vec<usize>,
     belief: Belief,
-    /// When the filter last looked.
+    /// What the filter last looked at, and when.
+    before: Option<Feature>,
     looked: Option<f64>,
     fit: Fit,
     exact: Vec<f64>,
@@ -71,6 +72,7 @@ impl<'a> Stream<'a> {
             kernels: None,
             still: still(&model.rows, &filter.network.starts),
             belief: Belief::prior(filter.network.prior(&model.rows), filter.patterns.exact()),
+            before: None,
             looked: None,
             fit: Fit::default(),
             exact: Vec::new(),
@@ -179,7 +181,8 @@ impl<'a> Stream<'a> {
         let none = dt * (self.fit.broad + unknown);
         let mut exactly = None;
         if let Some(exact) = exact {
-            exact.fit(feature, &mut self.exact);
+            let wide = (self.fit.states.as_slice(), all.usual_cost());
+            exact.fit(feature, self.before.as_ref(), wide, &mut self.exact);
             for log in &mut self.exact {
                 *log += self.fit.broad;
             }
@@ -194,6 +197,7 @@ impl<'a> Stream<'a> {
             likelihood.exact = Some(likelihood.alike.clone());
         }
         self.belief.weigh(&likelihood);
+        self.before = Some(feature.clone());
         Ok(Look {
             secs,
             dt,

@@ -14,6 +14,8 @@ const PHASE: f64 = 0.35;
 const PARAMETER: f64 = 0.7;
 /// Rows this near in every parameter, in spacings, tell how the manifold lies.
 const BESIDE: f64 = 1.25;
+/// Displacements are mostly of what came before a movement until it has lasted so long.
+const BEGINNING_SECS: f64 = 0.1;
 /// Ridge of the fit to the rows beside, in squared spacings.
 const RIDGE: f64 = 1e-3;
 
@@ -74,7 +76,15 @@ pub(super) fn tangents(
         .into_par_iter()
         .map(of)
         .collect::<Result<_>>()?;
+    let begins = |row: &Row, k: usize| {
+        let secs = k as f64 * row.step_secs - row.still_secs;
+        !row.cyclic && secs <= BEGINNING_SECS
+    };
+    let beginning = rows
+        .iter()
+        .flat_map(|row| (0..row.phases.len()).map(move |k| begins(row, k)));
     Ok(Some(Tangents {
+        beginning: beginning.collect(),
         count,
         vectors: all.concat(),
     }))
