@@ -175,7 +175,7 @@ impl Exact {
         let gone = before.filter(|b| b.unknown == feature.unknown).map(|b| {
             let steps = self.known.iter().map(|&i| feature.values[i] - b.values[i]);
             let steps = DVector::from_iterator(self.known.len(), steps.map(|d| d / ACROSS_M));
-            &self.basis.rows(0, leading) * steps
+            self.basis.rows(0, leading) * steps
         });
         let nearest = wide.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let worth = |s: usize| self.beginning[s] || wide[s] >= nearest - WORTH * usual;

@@ -12,13 +12,13 @@ use super::recogniser::FilterSettings;
 use super::rows::{Row, rows};
 use super::tangents::tangents;
 use crate::error::Result;
-use crate::primitive::Vocabulary;
+use crate::primitive::{Primitive, Vocabulary};
 
 /// A joint this far beyond where any exemplar had it cannot be believed, radians.
 const TOLERANCE_RAD: f64 = 0.5;
 
-/// In a stream of people, evidence counts so much of what the settings say: how somebody differs from the exemplars
-/// lasts, so that a moment tells little that the one before it did not.
+/// In a stream of people, none of whose movements goes round, evidence counts so much of what the settings say: how
+/// somebody differs from the exemplars lasts, so that a moment tells little that the one before it did not.
 const LASTING: f64 = 0.14;
 
 /// Rows and what is needed to compare moments with them.
@@ -63,7 +63,9 @@ impl Model {
             false => tangents(vocabulary, &rows, &features, dims)?,
         };
         // Evidence of clips gets its temperature as a whole; that of the manifold itself is no matter of people.
-        let lasting = (!offset && tangents.is_none()).then_some(LASTING);
+        // Where one cycle goes over into the next, no beginning and no end tells, and cool evidence is late.
+        let cycles = vocabulary.primitives().iter().any(Primitive::is_cyclic);
+        let lasting = (!offset && tangents.is_none() && !cycles).then_some(LASTING);
         let share = lasting.unwrap_or(1.0);
         let [hands, body] = layout.parts();
         let trusts = [settings.hands_trust, settings.body_trust].map(|t| share * t);
