@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
 use kineme::control::{KinematicRobot, Robot};
-use kineme::primitive::{Observations, Posterior};
+use kineme::perception::{Filter, FilterSettings};
+use kineme::primitive::{Observations, Posterior, readings};
 use kineme::{Motion, Role, Root, Vocabulary};
 use kineme_paper::choreographies::{SCRIPTS, choreography};
 use kineme_paper::encoding_test::{Answer, Question, RESEMBLING, SETS, wilson};
@@ -98,6 +99,19 @@ fn animations_are_more_than_fifty_and_none_of_the_behaviors() {
     assert!(all.len() > 50);
     assert!(all.iter().all(|c| c.motion().rate_hz() == 120.0));
     assert!(all.iter().flat_map(|c| &c.truth).all(Option::is_none));
+}
+
+#[test]
+fn joints_where_no_exemplar_has_them_are_an_unknown_movement_and_no_broken_sensors() {
+    let filter = Filter::new(boxing(), &FilterSettings::default()).expect("a filter");
+    let all = animations(boxing().body()).expect("animations");
+    for name in ["scratch-head", "shrug"] {
+        let clip = all.iter().find(|c| c.name.contains(name)).expect(name);
+        for reading in readings(&filter, &clip.seen).expect("readings") {
+            let greatest = reading.posterior.primitives.into_iter().fold(0.0, f64::max);
+            assert!(greatest < 0.5, "{name}: {greatest}");
+        }
+    }
 }
 
 #[test]

@@ -14,13 +14,13 @@ use crate::math::eigen::principal;
 
 /// Standard deviation across the manifold, metres: sensors, and what a controller lags. Postures alone are compared: who
 /// goes from one movement into the next has no displacement of either, and the pace along a row says as much.
-const ACROSS_M: f64 = 0.003;
+const ACROSS_M: f64 = 0.005;
 /// Who stands still is displaced by so much in a window, metres (radians of the turn): sensors, and a body's sway.
-const SWAY_M: f64 = 0.005;
+const SWAY_M: f64 = 0.003;
 /// How much a squared distance counts, a second (see [`super::emission::Part`]).
-const TRUST_PER_SEC: f64 = 12.0;
+const TRUST_PER_SEC: f64 = 36.0;
 /// Movement that is not on the manifold is anywhere within so many deviations of the rows.
-const BROAD: f64 = 10.0;
+const BROAD: f64 = 20.0;
 /// Directions in which the rows vary by less, in deviations, are all alike.
 const ALIKE: f64 = 0.15;
 /// States are first compared in so many directions, and in all where that leaves them within so much of the best,
@@ -162,8 +162,9 @@ impl Exact {
         let z = &self.basis * &off;
         let outside = (off.norm_squared() - z.norm_squared()).max(0.0);
         let beyond = BROAD * BROAD;
-        let mut broad = outside / beyond;
-        broad += (self.known.len() - z.len()) as f64 * beyond.ln();
+        // What no row moves need not move elsewhere either.
+        let elsewhere = (self.known.len() - z.len()) as f64 * beyond.ln();
+        let mut broad = outside.min(outside / beyond + elsewhere);
         for (x, v) in z.iter().zip(self.variances.iter()) {
             broad += x * x / (v + beyond) + (v + beyond).ln();
         }

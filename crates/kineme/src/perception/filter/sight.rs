@@ -10,8 +10,9 @@ use crate::skeleton::Skeleton;
 const BRIDGED_SECS: f64 = 0.25;
 /// A joint out of every exemplar's range for so long counts as broken.
 const BROKEN_SECS: f64 = 0.5;
-/// Where a greater share of the joints is out of range, it is an unknown movement and no broken sensor.
-const BROKEN_SHARE: f64 = 0.2;
+/// Where joints out of range leave more than this share of a posture's numbers unknown, more than a limb, it is an unknown
+/// movement and no broken sensor.
+const BROKEN_SHARE: f64 = 0.25;
 
 /// The joints of a stream, as far as they can be believed.
 #[derive(Debug, Clone)]
@@ -66,29 +67,36 @@ impl<'m> Sight<'m> {
             };
         }
         let gone = |since: &Option<f64>, secs: f64| since.is_none_or(|s| observed.secs - s > secs);
-        let mut lost: Vec<bool> = (0..joints)
+        let unseen: Vec<bool> = (0..joints)
             .map(|j| !body.coordinates(j).is_empty() && gone(&self.seen[j], BRIDGED_SECS))
             .collect();
-        let broken: Vec<usize> = (0..joints)
-            .filter(|&j| self.out[j].is_some_and(|s| observed.secs - s >= BROKEN_SECS))
-            .collect();
-        let moving = (0..joints)
-            .filter(|&j| !body.coordinates(j).is_empty())
-            .count();
-        if broken.len() as f64 <= BROKEN_SHARE * moving as f64 {
-            for j in broken {
-                lost[j] = true;
+        let out = |j: usize| self.out[j].is_some_and(|s| observed.secs - s >= BROKEN_SECS);
+        let broken: Vec<bool> = (0..joints).map(|j| unseen[j] || out(j)).collect();
+        let (mut pose, mut unknown) = self.without(&unseen);
+        self.lost = unseen;
+        if broken != self.lost {
+            let (believed, fewer) = self.without(&broken);
+            let hidden = |unknown: &[bool]| unknown.iter().filter(|u| **u).count();
+            let more = hidden(&fewer) - hidden(&unknown);
+            if more as f64 <= BROKEN_SHARE * self.layout.posture_dims() as f64 {
+                (pose, unknown) = (believed, fewer);
+                self.lost = broken;
             }
         }
-        let mut pose = self.pose.clone();
-        self.lost.clone_from(&lost);
-        stand_in(body, &mut pose, &mut lost);
         Moment {
             secs: observed.secs,
             posture: self.layout.posture(&pose),
-            unknown: self.layout.unknown(&lost),
+            unknown,
             root: observed.root,
         }
+    }
+
+    /// The pose without joints that are lost, and which numbers of the posture are unknown then.
+    fn without(&self, lost: &[bool]) -> (Vec<f64>, Vec<bool>) {
+        let (mut pose, mut lost) = (self.pose.clone(), lost.to_vec());
+        stand_in(self.layout.body(), &mut pose, &mut lost);
+        let unknown = self.layout.unknown(&lost);
+        (pose, unknown)
     }
 }
 

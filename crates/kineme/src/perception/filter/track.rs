@@ -7,8 +7,10 @@ use crate::primitive::Vocabulary;
 /// Chances a second: to break a movement off, to begin one from rest, to begin one from unknown movement, and to go
 /// between rest and unknown movement.
 const LEAVE: f64 = 0.3;
-/// People hardly break off what has an end; what goes round and round ends no other way.
+/// People hardly break off what has an end; what goes round and round ends no other way. A body that carries primitives out
+/// is told to.
 const LEAVE_PEOPLE: f64 = 0.05;
+const LEAVE_EXACT: f64 = 1.0;
 const BEGIN: f64 = 2.0;
 /// The same of a movement that has ended, where the body need not stand still afterwards.
 const ENDED: f64 = 20.0;
@@ -17,7 +19,7 @@ const CHANGE: f64 = 0.5;
 const AFTER: [f64; 3] = [0.3, 0.2, 0.5];
 /// A movement is entered at its beginning, within so much of it ...
 const ENTRY: f64 = 0.06;
-const ENTRY_EXACT: f64 = 0.01;
+const ENTRY_EXACT: f64 = 0.03;
 /// ... but for one time in so many, when it is entered anywhere.
 const ANYWHERE: f64 = 0.15;
 /// Before anything was seen: rest, unknown, and all primitives alike.
@@ -67,9 +69,10 @@ impl Network {
             let even = 1.0 / row.progress.len() as f64;
             let share = |k: usize| ((1.0 - ANYWHERE) * near(k) / sum + ANYWHERE * even) / count;
             entry.extend(moments.clone().map(share));
-            let broken_off = match people && !row.cyclic {
-                true => LEAVE_PEOPLE,
-                false => LEAVE,
+            let broken_off = match (exact, people && !row.cyclic) {
+                (true, _) => LEAVE_EXACT,
+                (false, true) => LEAVE_PEOPLE,
+                (false, false) => LEAVE,
             };
             leave.extend(moments.map(|k| if still(k) { ENDED } else { broken_off }));
             starts.push(entry.len());
