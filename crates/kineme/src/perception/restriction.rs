@@ -17,9 +17,10 @@ use crate::primitive::{
 };
 use crate::skeleton::{JointSet, PARTS, Root, Skeleton};
 
-/// A part tells of a primitive that moves it this much at least of what any does: the sum of the ranges through which its
-/// joints turn. A twist swings the arms by more than the trunk, and still it is the trunk's own.
-const SHARE: f64 = 0.2;
+/// A part shows a primitive when two shares multiply to this much: that of the part in the primitive's movement, and
+/// that of its movement here in the most that any primitive makes the part move. Either alone misleads: a twist swings
+/// the arms by more than the trunk, whose own it is; of a jab the trunk shows little, but more than of a wave.
+const SHARES: f64 = 0.1;
 
 /// A vocabulary as a part of the body shows it, and what makes observations alike.
 ///
@@ -134,9 +135,8 @@ impl Part {
                 parts.join(", ")
             )));
         }
-        let kept: Vec<usize> = (0..all.len())
-            .filter(|&k| own[k] >= SHARE * most)
-            .collect();
+        let shares = |k: usize| own[k] / moved[k].iter().sum::<f64>() * own[k] / most;
+        let kept: Vec<usize> = (0..all.len()).filter(|&k| shares(k) >= SHARES).collect();
         let of = |k: &usize| self.primitive(&all[*k]);
         let primitives: Vec<Primitive> = kept.iter().map(of).collect::<Result<_>>()?;
         let pairs = kept.iter().flat_map(|&a| kept.iter().map(move |&b| (a, b)));

@@ -17,6 +17,9 @@ use crate::primitive::{Primitive, Vocabulary};
 /// A joint this far beyond where any exemplar had it cannot be believed, radians.
 const TOLERANCE_RAD: f64 = 0.5;
 
+/// Coordinates that vary by less do not move, radians.
+const STILL_RAD: f64 = 1e-6;
+
 /// In a stream of people, none of whose movements goes round, evidence counts so much of what the settings say: how
 /// somebody differs from the exemplars lasts, so that a moment tells little that the one before it did not.
 const LASTING: f64 = 0.14;
@@ -149,6 +152,11 @@ impl Bounds {
         for (own, [low, high]) in self.0.iter_mut().zip(&other.0) {
             *own = [own[0].min(*low), own[1].max(*high)];
         }
+    }
+
+    /// Whether the rows differ in any of these coordinates.
+    pub fn move_any(&self, mut coordinates: Range<usize>) -> bool {
+        coordinates.any(|c| self.0[c][1] - self.0[c][0] > STILL_RAD)
     }
 
     /// Whether these coordinates of a pose are where the rows have them, give or take what people differ by.

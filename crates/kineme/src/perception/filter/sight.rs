@@ -72,8 +72,9 @@ impl<'m> Sight<'m> {
         let broken: Vec<usize> = (0..joints)
             .filter(|&j| self.out[j].is_some_and(|s| observed.secs - s >= BROKEN_SECS))
             .collect();
+        // Of joints that nothing known moves nothing is expected.
         let moving = (0..joints)
-            .filter(|&j| !body.coordinates(j).is_empty())
+            .filter(|&j| self.bounds.move_any(body.coordinates(j)))
             .count();
         if broken.len() as f64 <= BROKEN_SHARE * moving as f64 {
             for j in broken {
