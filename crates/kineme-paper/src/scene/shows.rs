@@ -6,7 +6,7 @@ use kineme::{Motion, Vocabulary};
 use kineme_report::scene::{Actor, Class, Floats, Scene, Shares, Stretch, Take, Track};
 
 use super::takes::{actor, thinned};
-use crate::show::Show;
+use crate::show::{PartRead, Show};
 
 /// Frames and moments a second on the page.
 const FRAMES_HZ: f64 = 30.0;
@@ -48,26 +48,36 @@ fn routine(scene: &mut Scene, show: &Show) -> Take {
     let mut right = actor(scene, "Ares", &ares.done, FRAMES_HZ);
     right.wears = Some(0);
     right.aside = [0.0, -0.5 * ASIDE_M, 0.0];
+    let read = |part: &PartRead| {
+        posterior(
+            &format!("{}, recognised by joint angles", part_name(&part.names)),
+            &part.vocabulary,
+            &show.movements,
+            &part.readings,
+            ares.done.rate_hz(),
+        )
+    };
+    let mut tracks = vec![ran("Plan, as it ran", ares, &show.movements)];
+    tracks.extend(show.parts.iter().map(read));
+    tracks.push(error("Adonis", adonis));
     Take {
         name: "A routine".into(),
         note: format!(
             "One plan, two bodies: movements one after the other, two at a time, one that interrupts another, one to a \
-             point. {physics} What Ares did is recognised by the same primitives that moved it; two movements at a time \
-             are none of them."
+             point. {physics} What Ares did is recognised by the same primitives that moved it, part by part of its \
+             body: so two movements at a time are told apart, too. While one movement takes over from another, for \
+             about 0.4 s, the body does neither of them, and so it is read; and trunk and head do much the same in \
+             several of the blows."
         ),
         secs: ares.done.duration_secs(),
         actors: vec![left, right],
-        tracks: vec![
-            ran("Plan, as it ran", ares, &show.movements),
-            posterior(
-                "Recognised of Ares, by joint angles",
-                &show.movements,
-                &show.readings,
-                ares.done.rate_hz(),
-            ),
-            error("Adonis", adonis),
-        ],
+        tracks,
     }
+}
+
+/// `Trunk and head`.
+fn part_name(names: &[String]) -> String {
+    capital(&names.join(" and ").replace('_', " "))
 }
 
 fn bout(scene: &mut Scene, show: &Show) -> Take {
@@ -121,6 +131,7 @@ pub fn take_of_performance(
         take.secs = take.secs.max(seen.duration_secs());
         take.tracks.push(posterior(
             "Recognised of who is watched",
+            vocabulary,
             vocabulary,
             readings,
             seen.rate_hz(),
@@ -200,8 +211,15 @@ fn ran(title: &str, performance: &Performance, vocabulary: &Vocabulary) -> Track
     }
 }
 
-/// Of all primitives those that are ever more probable than a tenth, rest, and everything else.
-fn posterior(title: &str, vocabulary: &Vocabulary, readings: &[Reading], rate_hz: f64) -> Track {
+/// Of all primitives those that are ever more probable than a tenth, rest, and everything else; in the colours that they
+/// have in the `whole` vocabulary.
+fn posterior(
+    title: &str,
+    vocabulary: &Vocabulary,
+    whole: &Vocabulary,
+    readings: &[Reading],
+    rate_hz: f64,
+) -> Track {
     let (moments, moments_hz) = thinned(readings.len(), rate_hz, MOMENTS_HZ);
     let of = |f: usize| &readings[f].posterior;
     let shown: Vec<usize> = (0..vocabulary.primitives().len())
@@ -209,9 +227,10 @@ fn posterior(title: &str, vocabulary: &Vocabulary, readings: &[Reading], rate_hz
         .collect();
     let mut classes: Vec<Class> = shown
         .iter()
-        .map(|&k| Class {
-            name: vocabulary.primitives()[k].name().into(),
-            colour: Some(k),
+        .map(|&k| vocabulary.primitives()[k].name())
+        .map(|name| Class {
+            name: name.into(),
+            colour: colour(whole, name),
         })
         .collect();
     classes.extend(["at rest", "none of them"].map(|name| Class {

@@ -12,15 +12,13 @@ use super::parts::same_body;
 use crate::error::{Error, Result};
 use crate::motion::Motion;
 use crate::primitive::{
-    Exemplar, Listener, MOVES_RAD, Moved, Observation, Observations, Primitive, Reading, Recogniser,
-    Recognition, Transitions, Vocabulary,
+    Exemplar, Listener, MOVES_RAD, Moved, Observation, Observations, Primitive, Reading,
+    Recogniser, Recognition, Transitions, Vocabulary,
 };
 use crate::skeleton::{JointSet, PARTS, Root, Skeleton};
 
-/// A part shows a primitive when two shares multiply to this much: that of the part in the primitive's movement, and
-/// that of its movement here in the most that any primitive makes the part move. Either alone misleads: a twist swings
-/// the arms by more than the trunk, whose own it is; of a jab the trunk shows little, but more than of a wave.
-const SHARES: f64 = 0.1;
+/// A part shows the primitives that turn its joints by so much at least of what any does, ranges summed.
+const SHARE: f64 = 0.25;
 
 /// A vocabulary as a part of the body shows it, and what makes observations alike.
 ///
@@ -42,7 +40,7 @@ struct Part {
 
 impl Restriction {
     /// A vocabulary restricted to parts of the body ([`PARTS`]) and single joints, by name: the primitives that turn
-    /// these by at least a fifth of what any primitive does. The root goes with both legs. Restricted to the
+    /// these by at least a quarter of what any primitive does. The root goes with both legs. Restricted to the
     /// whole body it is the vocabulary itself; else recognisers have learned nothing of it yet ([`Self::calibrated`]).
     ///
     /// # Errors
@@ -135,8 +133,7 @@ impl Part {
                 parts.join(", ")
             )));
         }
-        let shares = |k: usize| own[k] / moved[k].iter().sum::<f64>() * own[k] / most;
-        let kept: Vec<usize> = (0..all.len()).filter(|&k| shares(k) >= SHARES).collect();
+        let kept: Vec<usize> = (0..all.len()).filter(|&k| own[k] >= SHARE * most).collect();
         let of = |k: &usize| self.primitive(&all[*k]);
         let primitives: Vec<Primitive> = kept.iter().map(of).collect::<Result<_>>()?;
         let pairs = kept.iter().flat_map(|&a| kept.iter().map(move |&b| (a, b)));
@@ -152,12 +149,7 @@ impl Part {
             behavior
         });
         let behaviors = behaviors.filter(|b| !b.primitives.is_empty()).collect();
-        Vocabulary::new(
-            Arc::clone(whole.body()),
-            primitives,
-            behaviors,
-            transitions,
-        )
+        Vocabulary::new(Arc::clone(whole.body()), primitives, behaviors, transitions)
     }
 
     /// A primitive whose exemplars move the part alone, registered and parametrised as they were.

@@ -29,8 +29,8 @@ pub use model::{Group, Primitive};
 pub use modelling::{
     Fit, Interpolation, LeaveOneOut, Mismatched, Modelling, Parameterisation, Trial, Used,
 };
-pub use moved::Moved;
 pub(crate) use moved::MOVES_RAD;
+pub use moved::Moved;
 pub use recognition::{
     Listener, Observation, Observations, Place, Posterior, Reading, Recogniser, Recognition, Span,
     readings,

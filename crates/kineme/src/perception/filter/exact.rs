@@ -35,7 +35,7 @@ const BACK: f64 = 0.3;
 /// Neither does who goes on by less than this share of the pace, where that is so many deviations from one look to the
 /// next.
 const ONWARD: f64 = 0.3;
-const TOLD: f64 = 0.3;
+const TOLD: f64 = 0.1;
 
 /// What may vary around the moments of the rows: vectors in the features' numbers, each as long as one deviation.
 #[derive(Debug, Clone)]
@@ -158,7 +158,9 @@ impl Exact {
             DMatrix::from_rows(&rows)
         });
         let directions = self.leading.directions;
-        let tangent = along.as_ref().map(|w| w.row(0).columns(0, directions).norm_squared());
+        let tangent = along
+            .as_ref()
+            .map(|w| w.row(0).columns(0, directions).norm_squared());
         let squared = tangent.unwrap_or(0.0);
         self.onward.push(pace * squared / (1.0 + squared).sqrt());
         self.leading.push(place, along.as_ref())?;
