@@ -57,7 +57,9 @@ pub struct Show {
     pub physics: bool,
     /// The routine by Adonis and by Ares.
     pub routine: [Performance; 2],
-    /// What the filter thought of Ares' routine, part by part.
+    /// What the filter thought of Ares' routine, frame by frame.
+    pub readings: Vec<Reading>,
+    /// The same part by part.
     pub parts: Vec<PartRead>,
     /// The same routine by its hands alone.
     pub encoding: Encoding,
@@ -139,6 +141,8 @@ pub fn show(seed: u64, watch: &mut dyn FnMut(Act)) -> Result<Show> {
 
     watch(Act::Reading);
     let seen = Observations::complete(by_ares.done.clone());
+    let filter = Filter::new(&movements, &FilterSettings::default())?;
+    let readings = readings(&filter, &seen)?;
     let parts = parts_of(&routine)
         .into_iter()
         .map(|names| read(&movements, names, &seen))
@@ -151,6 +155,7 @@ pub fn show(seed: u64, watch: &mut dyn FnMut(Act)) -> Result<Show> {
     Ok(Show {
         physics,
         routine: [by_adonis, by_ares],
+        readings,
         parts,
         encoding,
         attacker,
@@ -174,7 +179,8 @@ fn parts_of(plan: &Plan) -> Vec<Vec<String>> {
 
 /// What is recognised of a part of the body.
 fn read(vocabulary: &Vocabulary, names: Vec<String>, seen: &Observations) -> Result<PartRead> {
-    let restriction = Restriction::new(vocabulary, &names)?.calibrated()?;
+    // What is learned by leaving exemplars out is for clips; it takes longer than all that is asked here.
+    let restriction = Restriction::new(vocabulary, &names)?;
     let filter = Filter::new(restriction.vocabulary(), &FilterSettings::default())?;
     let readings = readings(&restriction.recogniser(Box::new(filter)), seen)?;
     Ok(PartRead {

@@ -41,6 +41,7 @@ fn bodies_do_the_routine_and_what_they_do_is_recognised() {
         assert!(answers.count() >= 1, "{attack:?}: {:?}", show.bout.ran);
     }
     let ares = &show.routine[1];
+    assert_eq!(show.readings.len(), ares.done.frames());
     assert_eq!(show.parts.len(), 2, "right arm, trunk and head");
     for part in &show.parts {
         assert_eq!(part.readings.len(), ares.done.frames());

@@ -48,36 +48,32 @@ fn routine(scene: &mut Scene, show: &Show) -> Take {
     let mut right = actor(scene, "Ares", &ares.done, FRAMES_HZ);
     right.wears = Some(0);
     right.aside = [0.0, -0.5 * ASIDE_M, 0.0];
-    let read = |part: &PartRead| {
-        posterior(
-            &format!("{}, recognised by joint angles", part_name(&part.names)),
-            &part.vocabulary,
-            &show.movements,
-            &part.readings,
-            ares.done.rate_hz(),
-        )
+    let recognised = |of: &str, vocabulary: &Vocabulary, readings: &[Reading]| {
+        let (whole, rate_hz) = (&show.movements, ares.done.rate_hz());
+        let title = format!("Recognised: {of}");
+        posterior(&title, vocabulary, whole, readings, rate_hz)
+    };
+    let part = |part: &PartRead| {
+        let of = part.names.join(" and ").replace('_', " ");
+        recognised(&of, &part.vocabulary, &part.readings)
     };
     let mut tracks = vec![ran("Plan, as it ran", ares, &show.movements)];
-    tracks.extend(show.parts.iter().map(read));
+    tracks.extend(show.parts.iter().map(part));
+    tracks.push(recognised("whole body", &show.movements, &show.readings));
     tracks.push(error("Adonis", adonis));
     Take {
         name: "A routine".into(),
         note: format!(
             "One plan, two bodies: movements one after the other, two at a time, one that interrupts another, one to a \
-             point. {physics} What Ares did is recognised by the same primitives that moved it, part by part of its \
-             body: so two movements at a time are told apart, too. While one movement takes over from another, for \
-             about 0.4 s, the body does neither of them, and so it is read; and trunk and head do much the same in \
-             several of the blows."
+             point. {physics} What Ares did is recognised, by its joint angles, with the same primitives that moved it. \
+             Of two movements at a time each is found by its part; for the whole body the two together are none of \
+             them. While one movement takes over from another, for about half a second, the body does neither and is \
+             read as whatever that resembles; trunk and head do much the same in several of the blows."
         ),
         secs: ares.done.duration_secs(),
         actors: vec![left, right],
         tracks,
     }
-}
-
-/// `Trunk and head`.
-fn part_name(names: &[String]) -> String {
-    capital(&names.join(" and ").replace('_', " "))
 }
 
 fn bout(scene: &mut Scene, show: &Show) -> Take {
