@@ -430,3 +430,65 @@ fn what_cannot_be_read_or_asked_for_has_its_exit_code() {
         run.err
     );
 }
+
+#[test]
+fn a_part_of_the_body_is_read_whatever_the_rest_does() {
+    let folder = punches();
+    let at = folder.path();
+    let table = fs::read_to_string(at.join("out.csv")).expect("a table");
+    // The left arm and the trunk do something else at every moment.
+    let header: Vec<&str> = table.lines().next().expect("a header").split(',').collect();
+    let other = |name: &str| name.starts_with("left_") || name.starts_with("pelvis");
+    let wild: String = table
+        .lines()
+        .enumerate()
+        .map(|(i, line)| {
+            let cells = line.split(',').zip(&header).map(|(cell, name)| match i {
+                0 => cell.to_owned(),
+                _ if other(name) => format!("{}", (0.7 * i as f64).sin()),
+                _ => cell.to_owned(),
+            });
+            cells.collect::<Vec<_>>().join(",") + "\n"
+        })
+        .collect();
+    fs::write(at.join("wild.csv"), &wild).expect("a table");
+    let arm = keep_columns(&table, |c| {
+        ["time", "root"].iter().any(|name| c.starts_with(name)) || c.starts_with("right_")
+    });
+    let label = |line: &str| lines(&done(at, line).out)[0]["label"].clone();
+    assert!(label("classify p.kineme wild.csv --json").is_null());
+    for method in METHODS {
+        let line = format!("--joints right_arm --json --method {method}");
+        let told = done(at, &format!("classify p.kineme wild.csv {line}")).out;
+        assert_eq!(lines(&told)[0]["label"], "punch-out", "{told}");
+        let frames = done(at, &format!("classify p.kineme wild.csv {line} --frames")).out;
+        let frames = lines(&frames);
+        assert_eq!(frames[40]["label"], "punch-out", "{}", frames[40]);
+        assert!((0.2..0.9).contains(&number(&frames[40]["phase"])));
+        // A stream of nothing but the arm says the same.
+        let arguments = format!("classify p.kineme - {line}");
+        let arguments: Vec<&str> = arguments.split_whitespace().collect();
+        let run = with_input(at, &arguments, arm.as_bytes());
+        assert_eq!(run.code, 0, "{}", run.err);
+        for (own, whole) in lines(&run.out).iter().zip(&frames) {
+            assert_eq!(own["label"], whole["label"], "{method}");
+        }
+    }
+    check(
+        at,
+        &[
+            (
+                "classify p.kineme out.csv --joints right_arm,wing",
+                b"",
+                2,
+                "unknown part or joint `wing`",
+            ),
+            (
+                "classify p.kineme out.csv --joints left_leg",
+                b"",
+                2,
+                "no primitive moves left_leg",
+            ),
+        ],
+    );
+}

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kineme::control::{ControlSettings, Controller, KinematicRobot, Plan, Robot};
 use kineme::interaction::{Performance, Session, SessionSettings, standing};
 use kineme::perception::encoding::{EffectorPaths, Encoder, Encoding, EncodingSettings};
-use kineme::perception::{Filter, FilterSettings, calibrated};
+use kineme::perception::{Filter, FilterSettings, Restriction, calibrated};
 use kineme::primitive::{Observations, Reading, Recogniser, readings};
 use kineme::{Motion, Root, Skeleton, Vocabulary};
 
@@ -59,6 +59,8 @@ pub struct Show {
     pub routine: [Performance; 2],
     /// What the filter thought of Ares' routine, frame by frame.
     pub readings: Vec<Reading>,
+    /// The same part by part.
+    pub parts: Vec<PartRead>,
     /// The same routine by its hands alone.
     pub encoding: Encoding,
     /// Who attacked.
@@ -67,6 +69,17 @@ pub struct Show {
     pub bout: Performance,
     /// What the filter thought of the attacker.
     pub heard: Vec<Reading>,
+}
+
+/// What was read of a part of the body.
+#[derive(Debug, Clone)]
+pub struct PartRead {
+    /// The names of its parts, as the plan has them.
+    pub names: Vec<String>,
+    /// The primitives that move it, restricted to it.
+    pub vocabulary: Vocabulary,
+    /// What the filter thought of it, frame by frame.
+    pub readings: Vec<Reading>,
 }
 
 /// The plans of the show: what their files are called, and what they say.
@@ -130,6 +143,10 @@ pub fn show(seed: u64, watch: &mut dyn FnMut(Act)) -> Result<Show> {
     let seen = Observations::complete(by_ares.done.clone());
     let filter = Filter::new(&movements, &FilterSettings::default())?;
     let readings = readings(&filter, &seen)?;
+    let parts = parts_of(&routine)
+        .into_iter()
+        .map(|names| read(&movements, names, &seen))
+        .collect::<Result<_>>()?;
     let settings = EncodingSettings::default();
     let encoder = Encoder::new(&movements, &settings)?;
     let paths =
@@ -139,12 +156,37 @@ pub fn show(seed: u64, watch: &mut dyn FnMut(Act)) -> Result<Show> {
         physics,
         routine: [by_adonis, by_ares],
         readings,
+        parts,
         encoding,
         attacker,
         bout,
         heard,
         movements: movements.clone(),
         boxing: boxing.clone(),
+    })
+}
+
+/// The parts of the body to which a plan gives movements of their own, in its order.
+fn parts_of(plan: &Plan) -> Vec<Vec<String>> {
+    let mut parts: Vec<Vec<String>> = Vec::new();
+    for planned in &plan.behaviors {
+        if !planned.joints.is_empty() && !parts.contains(&planned.joints) {
+            parts.push(planned.joints.clone());
+        }
+    }
+    parts
+}
+
+/// What is recognised of a part of the body.
+fn read(vocabulary: &Vocabulary, names: Vec<String>, seen: &Observations) -> Result<PartRead> {
+    // What is learned by leaving exemplars out is for clips; it takes longer than all that is asked here.
+    let restriction = Restriction::new(vocabulary, &names)?;
+    let filter = Filter::new(restriction.vocabulary(), &FilterSettings::default())?;
+    let readings = readings(&restriction.recogniser(Box::new(filter)), seen)?;
+    Ok(PartRead {
+        names,
+        vocabulary: restriction.vocabulary().clone(),
+        readings,
     })
 }
 

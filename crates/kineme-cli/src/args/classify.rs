@@ -46,12 +46,19 @@ fn lag(text: &str) -> Result<f64, String> {
 /// rest or none of them, how probable that is, and what was done when. --frames tells the same of every moment, from what
 /// was seen up to it, with phase (from 0 to 1) and parameters (in their own units). On stdin, -, it reads a table of joint
 /// angles, as `convert` writes it, and answers every row as it comes; an empty cell is a joint that was not seen.
+///
+/// --joints looks at a part of the body alone: an arm that waves is seen to wave whatever the legs do meanwhile, and of two
+/// movements at a time each is found by its part.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   kineme classify moves.kineme take.bvh              what a motion is, and when
   kineme classify moves.kineme captures/ --json | jq -r '[.motion, .label] | @tsv'
   kineme classify moves.kineme take.bvh --frames     moment by moment: answer, phase, parameters
+  kineme classify moves.kineme take.bvh --joints right_arm
+                                                     what the right arm does, whatever the rest of the body does
+  kineme classify moves.kineme take.bvh --joints trunk,head --frames
+                                                     what trunk and head do, moment by moment
   producer | kineme classify moves.kineme - --frames --json
                                                      a stream: a line of JSON a row, at once
   kineme classify moves.kineme take.bvh --method frame --n 3 --stride 6
@@ -75,6 +82,10 @@ pub struct ClassifyArgs {
     pub method: ClassifierName,
     #[command(flatten)]
     pub classifier: ClassifierArgs,
+    /// Look at these parts alone, and at the primitives that move them: left_arm, right_arm, trunk, head, left_leg,
+    /// right_leg, or joints [default: the whole body]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub joints: Vec<String>,
     /// Answer every frame; of a stream that is so in any case
     #[arg(long)]
     pub frames: bool,

@@ -4,10 +4,11 @@ mod stream;
 mod told;
 
 use kineme::Vocabulary;
+use kineme::perception::Restriction;
 use kineme::primitive::{Recogniser, readings};
 use kineme_formats::input::Entry;
 
-use crate::args::{ClassifyArgs, Global};
+use crate::args::{ClassifierName, ClassifyArgs, Global};
 use crate::failure::{Failure, complain, print};
 use crate::observed::observe;
 use crate::recognisers::classifier;
@@ -40,7 +41,12 @@ pub fn run(args: &ClassifyArgs, global: &Global) -> Result<u8, Failure> {
     }
     let vocabulary = read(&args.vocabulary)?;
     check_names(&vocabulary, args)?;
-    let recogniser = classifier(args.method, &args.classifier, &vocabulary)?;
+    let restriction = restriction(&vocabulary, args)?;
+    let known = restriction.as_ref().map(Restriction::vocabulary);
+    let mut recogniser = classifier(args.method, &args.classifier, known.unwrap_or(&vocabulary))?;
+    if let Some(restriction) = &restriction {
+        recogniser = Box::new(restriction.recogniser(recogniser));
+    }
     let teller = Teller::new(
         &*recogniser,
         args.classifier.lag.unwrap_or(0.0),
@@ -84,6 +90,24 @@ fn check_names(vocabulary: &Vocabulary, args: &ClassifyArgs) -> Result<(), Failu
             )))
         }
     }
+}
+
+/// The part of the body that is looked at, where it is not the whole.
+fn restriction(
+    vocabulary: &Vocabulary,
+    args: &ClassifyArgs,
+) -> Result<Option<Restriction>, Failure> {
+    if args.joints.is_empty() {
+        return Ok(None);
+    }
+    let restriction = Restriction::new(vocabulary, &args.joints).map_err(|e| {
+        Failure::usage(format!("--joints: {e}"))
+            .hint("such as --joints right_arm, or --joints trunk,head")
+    })?;
+    Ok(Some(match args.method {
+        ClassifierName::Filter => restriction.calibrated()?,
+        ClassifierName::Frame | ClassifierName::Paper => restriction,
+    }))
 }
 
 fn answer(

@@ -6,7 +6,7 @@ use kineme::{Motion, Vocabulary};
 use kineme_report::scene::{Actor, Class, Floats, Scene, Shares, Stretch, Take, Track};
 
 use super::takes::{actor, thinned};
-use crate::show::Show;
+use crate::show::{PartRead, Show};
 
 /// Frames and moments a second on the page.
 const FRAMES_HZ: f64 = 30.0;
@@ -48,25 +48,31 @@ fn routine(scene: &mut Scene, show: &Show) -> Take {
     let mut right = actor(scene, "Ares", &ares.done, FRAMES_HZ);
     right.wears = Some(0);
     right.aside = [0.0, -0.5 * ASIDE_M, 0.0];
+    let recognised = |of: &str, vocabulary: &Vocabulary, readings: &[Reading]| {
+        let (whole, rate_hz) = (&show.movements, ares.done.rate_hz());
+        let title = format!("Recognised: {of}");
+        posterior(&title, vocabulary, whole, readings, rate_hz)
+    };
+    let part = |part: &PartRead| {
+        let of = part.names.join(" and ").replace('_', " ");
+        recognised(&of, &part.vocabulary, &part.readings)
+    };
+    let mut tracks = vec![ran("Plan, as it ran", ares, &show.movements)];
+    tracks.extend(show.parts.iter().map(part));
+    tracks.push(recognised("whole body", &show.movements, &show.readings));
+    tracks.push(error("Adonis", adonis));
     Take {
         name: "A routine".into(),
         note: format!(
             "One plan, two bodies: movements one after the other, two at a time, one that interrupts another, one to a \
-             point. {physics} What Ares did is recognised by the same primitives that moved it; two movements at a time \
-             are none of them."
+             point. {physics} What Ares did is recognised, by its joint angles, with the same primitives that moved it. \
+             Of two movements at a time each is found by its part; for the whole body the two together are none of \
+             them. While one movement takes over from another, for about half a second, the body does neither and is \
+             read as whatever that resembles; trunk and head do much the same in several of the blows."
         ),
         secs: ares.done.duration_secs(),
         actors: vec![left, right],
-        tracks: vec![
-            ran("Plan, as it ran", ares, &show.movements),
-            posterior(
-                "Recognised of Ares, by joint angles",
-                &show.movements,
-                &show.readings,
-                ares.done.rate_hz(),
-            ),
-            error("Adonis", adonis),
-        ],
+        tracks,
     }
 }
 
@@ -121,6 +127,7 @@ pub fn take_of_performance(
         take.secs = take.secs.max(seen.duration_secs());
         take.tracks.push(posterior(
             "Recognised of who is watched",
+            vocabulary,
             vocabulary,
             readings,
             seen.rate_hz(),
@@ -200,8 +207,15 @@ fn ran(title: &str, performance: &Performance, vocabulary: &Vocabulary) -> Track
     }
 }
 
-/// Of all primitives those that are ever more probable than a tenth, rest, and everything else.
-fn posterior(title: &str, vocabulary: &Vocabulary, readings: &[Reading], rate_hz: f64) -> Track {
+/// Of all primitives those that are ever more probable than a tenth, rest, and everything else; in the colours that they
+/// have in the `whole` vocabulary.
+fn posterior(
+    title: &str,
+    vocabulary: &Vocabulary,
+    whole: &Vocabulary,
+    readings: &[Reading],
+    rate_hz: f64,
+) -> Track {
     let (moments, moments_hz) = thinned(readings.len(), rate_hz, MOMENTS_HZ);
     let of = |f: usize| &readings[f].posterior;
     let shown: Vec<usize> = (0..vocabulary.primitives().len())
@@ -209,9 +223,10 @@ fn posterior(title: &str, vocabulary: &Vocabulary, readings: &[Reading], rate_hz
         .collect();
     let mut classes: Vec<Class> = shown
         .iter()
-        .map(|&k| Class {
-            name: vocabulary.primitives()[k].name().into(),
-            colour: Some(k),
+        .map(|&k| vocabulary.primitives()[k].name())
+        .map(|name| Class {
+            name: name.into(),
+            colour: colour(whole, name),
         })
         .collect();
     classes.extend(["at rest", "none of them"].map(|name| Class {

@@ -8,6 +8,7 @@ mod filter;
 mod frame;
 mod paper;
 mod parts;
+mod restriction;
 mod rows;
 mod spans;
 
@@ -16,3 +17,4 @@ pub use calibration::calibrated;
 pub use filter::{Filter, FilterSettings};
 pub use frame::{Frame, FrameSettings, Patch};
 pub use paper::{Bars, Mixture, Paper, PaperSettings};
+pub use restriction::{Restricted, Restriction};

@@ -10,6 +10,7 @@ mod flowfield;
 mod judge;
 mod model;
 mod modelling;
+mod moved;
 mod parametrising;
 mod recognition;
 mod registered;
@@ -28,6 +29,8 @@ pub use model::{Group, Primitive};
 pub use modelling::{
     Fit, Interpolation, LeaveOneOut, Mismatched, Modelling, Parameterisation, Trial, Used,
 };
+pub(crate) use moved::MOVES_RAD;
+pub use moved::Moved;
 pub use recognition::{
     Listener, Observation, Observations, Place, Posterior, Reading, Recogniser, Recognition, Span,
     readings,

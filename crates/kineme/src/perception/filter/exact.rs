@@ -32,6 +32,10 @@ const FAR_PER_SEC: f64 = 600.0;
 const WORTH: f64 = 0.5;
 /// Who goes back along a movement by so many deviations from one look to the next does not carry it out.
 const BACK: f64 = 0.3;
+/// Neither does who goes on by less than this share of the pace, where that is so many deviations from one look to the
+/// next.
+const ONWARD: f64 = 0.3;
+const TOLD: f64 = 0.1;
 
 /// What may vary around the moments of the rows: vectors in the features' numbers, each as long as one deviation.
 #[derive(Debug, Clone)]
@@ -42,6 +46,8 @@ pub(super) struct Tangents {
     pub vectors: Vec<Option<Vec<f64>>>,
     /// Whether a state lies so near to a beginning that displacements are of what came before.
     pub beginning: Vec<bool>,
+    /// How many of its first vector a movement goes on by a second at each state.
+    pub pace: Vec<f64>,
 }
 
 /// The densities of moments around the rows' moments, against that of movement anywhere.
@@ -61,6 +67,8 @@ pub(super) struct Exact {
     /// Logarithm of each state's determinant; none of states that are not compared.
     log_dets: Vec<Option<f64>>,
     beginning: Vec<bool>,
+    /// How far a movement goes on along the tangent of phase a second at each state, deviations.
+    onward: Vec<f64>,
 }
 
 /// Neighbourhoods of states: spheres that are long along the tangents.
@@ -114,14 +122,16 @@ impl Exact {
             leading: Around::of(variances.len().min(LEADING), tangents.count),
             variances: DVector::from_vec(variances),
             log_dets: Vec::with_capacity(count),
+            onward: Vec::with_capacity(count),
             beginning: tangents.beginning.clone(),
             displaced: (0..dims).filter(|&i| !still[i] && !hidden(i)).collect(),
             known,
             mean,
             basis,
         };
-        for (place, vectors) in places.column_iter().zip(&tangents.vectors) {
-            exact.push(place.as_slice(), vectors.as_deref(), dims)?;
+        for (s, place) in places.column_iter().enumerate() {
+            let vectors = tangents.vectors[s].as_deref();
+            exact.push(place.as_slice(), vectors, tangents.pace[s], dims)?;
         }
         Ok(Some(exact))
     }
@@ -132,7 +142,13 @@ impl Exact {
         0.5 * TRUST_PER_SEC * squares.sum::<f64>() / (SWAY_M * SWAY_M)
     }
 
-    fn push(&mut self, place: &[f64], vectors: Option<&[f64]>, dims: usize) -> Result<()> {
+    fn push(
+        &mut self,
+        place: &[f64],
+        vectors: Option<&[f64]>,
+        pace: f64,
+        dims: usize,
+    ) -> Result<()> {
         let scaled = |v: &[f64]| {
             let own = self.known.iter().map(|&i| v[i] / ACROSS_M);
             (&self.basis * DVector::from_iterator(self.known.len(), own)).transpose()
@@ -141,19 +157,25 @@ impl Exact {
             let rows: Vec<_> = v.chunks_exact(dims).map(scaled).collect();
             DMatrix::from_rows(&rows)
         });
+        let directions = self.leading.directions;
+        let tangent = along
+            .as_ref()
+            .map(|w| w.row(0).columns(0, directions).norm_squared());
+        let squared = tangent.unwrap_or(0.0);
+        self.onward.push(pace * squared / (1.0 + squared).sqrt());
         self.leading.push(place, along.as_ref())?;
         self.log_dets.push(self.whole.push(place, along.as_ref())?);
         Ok(())
     }
 
     /// Logarithms of the densities a second around each state, less that of movement anywhere. Of states that are far
-    /// behind the best, bounds from above: those are told by the leading directions. States along which the body went
-    /// back since a moment `before` are none that it is in, nor, but for beginnings, those that the wide measure (`wide`,
-    /// of which `usual` is what a moment usually costs) has far from its best: minus infinity.
+    /// behind the best, bounds from above: those are told by the leading directions. Minus infinity of states along which
+    /// the body went back, or hardly on, since a moment `before` (and so many seconds ago), and, but for beginnings, of
+    /// those that the wide measure (`wide`, of which `usual` is what a moment usually costs) has far from its best.
     pub fn fit(
         &self,
         feature: &Feature,
-        before: Option<&Feature>,
+        before: Option<(&Feature, f64)>,
         (wide, usual): (&[f64], f64),
         out: &mut Vec<f64>,
     ) {
@@ -173,19 +195,23 @@ impl Exact {
         let log = |squared: f64, log_det: f64| {
             0.5 * TRUST_PER_SEC * (broad - outside - squared - log_det)
         };
-        let gone = before.filter(|b| b.unknown == feature.unknown).map(|b| {
+        let before = before.filter(|(b, _)| b.unknown == feature.unknown);
+        let gone = before.map(|(b, dt)| {
             let steps = self.known.iter().map(|&i| feature.values[i] - b.values[i]);
             let steps = DVector::from_iterator(self.known.len(), steps.map(|d| d / ACROSS_M));
-            self.basis.rows(0, leading) * steps
+            (self.basis.rows(0, leading) * steps, dt)
         });
         let nearest = wide.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let worth = |s: usize| self.beginning[s] || wide[s] >= nearest - WORTH * usual;
-        let back = |s: usize| {
-            let along = |gone: &DVector<f64>| self.leading.along_phase(gone.as_slice(), s);
-            gone.as_ref().is_some_and(|gone| along(gone) < -BACK)
+        let stays = |s: usize| {
+            gone.as_ref().is_some_and(|(gone, dt)| {
+                let along = self.leading.along_phase(gone.as_slice(), s);
+                let onward = dt * self.onward[s];
+                along < -BACK || (onward > TOLD && along < ONWARD * onward)
+            })
         };
         let bound = |(s, log_det): (usize, &Option<f64>)| match log_det {
-            Some(d) if worth(s) && !back(s) => log(self.leading.squared(&z[..leading], s), *d),
+            Some(d) if worth(s) && !stays(s) => log(self.leading.squared(&z[..leading], s), *d),
             _ => f64::NEG_INFINITY,
         };
         out.clear();

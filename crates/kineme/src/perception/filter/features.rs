@@ -106,7 +106,7 @@ impl Layout {
     }
 
     /// Numbers of a posture.
-    pub fn posture_dims(&self) -> usize {
+    fn posture_dims(&self) -> usize {
         3 * (self.tips.len() + self.joints.len())
     }
 

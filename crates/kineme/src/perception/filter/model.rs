@@ -17,6 +17,9 @@ use crate::primitive::{Primitive, Vocabulary};
 /// A joint this far beyond where any exemplar had it cannot be believed, radians.
 const TOLERANCE_RAD: f64 = 0.5;
 
+/// A number of a posture that varies by less among the rows is not moved, metres.
+const MOVED_M: f64 = 1e-3;
+
 /// In a stream of people, none of whose movements goes round, evidence counts so much of what the settings say: how
 /// somebody differs from the exemplars lasts, so that a moment tells little that the one before it did not.
 const LASTING: f64 = 0.14;
@@ -28,6 +31,8 @@ pub(super) struct Model {
     pub rows: Vec<Row>,
     /// Where the rows have the joints.
     pub bounds: Bounds,
+    /// Which numbers of a posture the rows differ in.
+    pub moved: Vec<bool>,
     /// Half of the first moments' posture is taken off: people differ in how they stand.
     offset: bool,
     /// Features of all rows' moments, one after the other.
@@ -56,7 +61,16 @@ impl Model {
             features.extend(own);
             bounds.join(&range);
         }
-        let covariance = covariance(vocabulary, &rows, &features, &layout.still());
+        let still = layout.still();
+        let moved = |i: usize| {
+            let values = features.chunks_exact(dims).map(|f| f[i]);
+            let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+                [low.min(v), high.max(v)]
+            });
+            range[1] - range[0] > MOVED_M
+        };
+        let moved = (0..dims).filter(|&i| still[i]).map(moved).collect();
+        let covariance = covariance(vocabulary, &rows, &features, &still);
         // Half of the first moments' posture taken off, a body is not where the manifold has it.
         let tangents = match offset {
             true => None,
@@ -88,6 +102,7 @@ impl Model {
             layout,
             rows,
             bounds,
+            moved,
             offset,
             features,
             parts,

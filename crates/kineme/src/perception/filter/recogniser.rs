@@ -130,7 +130,7 @@ impl<'v> Filter<'v> {
     /// The evidence of a clip.
     pub(super) fn evidence(&self, seen: &Observations) -> Result<Evidence> {
         let model = &self.clips;
-        let mut sight = Sight::new(&model.layout, &model.bounds);
+        let mut sight = Sight::new(model);
         let frames = self.looked_at(seen);
         let moments: Vec<Moment> = frames.map(|f| sight.see(&seen.at(f))).collect();
         let features = model.of_clip(moments);

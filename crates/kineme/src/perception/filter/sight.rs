@@ -2,7 +2,7 @@
 //! and a joint that is where no exemplar ever had it counts as broken.
 
 use super::features::{Layout, Moment};
-use super::model::Bounds;
+use super::model::{Bounds, Model};
 use crate::primitive::Observation;
 use crate::skeleton::Skeleton;
 
@@ -10,15 +10,17 @@ use crate::skeleton::Skeleton;
 const BRIDGED_SECS: f64 = 0.25;
 /// A joint out of every exemplar's range for so long counts as broken.
 const BROKEN_SECS: f64 = 0.5;
-/// Where joints out of range leave more than this share of a posture's numbers unknown, more than a limb, it is an unknown
-/// movement and no broken sensor.
-const BROKEN_SHARE: f64 = 0.25;
+/// Where joints out of range leave more than this share unknown of the numbers that the exemplars move, more than a limb, it
+/// is an unknown movement and no broken sensor.
+const BROKEN_SHARE: f64 = 1.0 / 3.0;
 
 /// The joints of a stream, as far as they can be believed.
 #[derive(Debug, Clone)]
 pub(super) struct Sight<'m> {
     layout: &'m Layout,
     bounds: &'m Bounds,
+    /// Which numbers of a posture the rows differ in.
+    moved: &'m [bool],
     pose: Vec<f64>,
     /// When each joint was last seen.
     seen: Vec<Option<f64>>,
@@ -29,11 +31,12 @@ pub(super) struct Sight<'m> {
 }
 
 impl<'m> Sight<'m> {
-    pub fn new(layout: &'m Layout, bounds: &'m Bounds) -> Self {
-        let body = layout.body();
+    pub fn new(model: &'m Model) -> Self {
+        let body = model.layout.body();
         Self {
-            layout,
-            bounds,
+            layout: &model.layout,
+            bounds: &model.bounds,
+            moved: &model.moved,
             pose: body.neutral(),
             seen: vec![None; body.joints().len()],
             out: vec![None; body.joints().len()],
@@ -76,9 +79,13 @@ impl<'m> Sight<'m> {
         self.lost = unseen;
         if broken != self.lost {
             let (believed, fewer) = self.without(&broken);
-            let hidden = |unknown: &[bool]| unknown.iter().filter(|u| **u).count();
+            let hidden = |unknown: &[bool]| {
+                let pairs = unknown.iter().zip(self.moved);
+                pairs.filter(|(u, moved)| **u && **moved).count()
+            };
             let more = hidden(&fewer) - hidden(&unknown);
-            if more as f64 <= BROKEN_SHARE * self.layout.posture_dims() as f64 {
+            let moved = self.moved.iter().filter(|m| **m).count();
+            if more as f64 <= BROKEN_SHARE * moved as f64 {
                 (pose, unknown) = (believed, fewer);
                 self.lost = broken;
             }

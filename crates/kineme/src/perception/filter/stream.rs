@@ -66,7 +66,7 @@ impl<'a> Stream<'a> {
         let model = &filter.stream;
         Self {
             guard: Guard::default(),
-            sight: Sight::new(&model.layout, &model.bounds),
+            sight: Sight::new(model),
             recent: Recent::default(),
             known: None,
             kernels: None,
@@ -182,7 +182,8 @@ impl<'a> Stream<'a> {
         let mut exactly = None;
         if let Some(exact) = exact {
             let wide = (self.fit.states.as_slice(), all.usual_cost());
-            exact.fit(feature, self.before.as_ref(), wide, &mut self.exact);
+            let before = self.before.as_ref().map(|b| (b, dt));
+            exact.fit(feature, before, wide, &mut self.exact);
             for log in &mut self.exact {
                 *log += self.fit.broad;
             }

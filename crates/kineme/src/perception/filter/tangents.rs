@@ -83,8 +83,11 @@ pub(super) fn tangents(
     let beginning = rows
         .iter()
         .flat_map(|row| (0..row.phases.len()).map(move |k| begins(row, k)));
+    // The tangent of phase spans two moments.
+    let pace = |row: &Row| vec![1.0 / (2.0 * PHASE * row.step_secs); row.phases.len()];
     Ok(Some(Tangents {
         beginning: beginning.collect(),
+        pace: rows.iter().flat_map(pace).collect(),
         count,
         vectors: all.concat(),
     }))
