@@ -34,7 +34,7 @@ const WORTH: f64 = 0.5;
 const BACK: f64 = 0.3;
 /// Neither does who goes on by less than this share of the pace, where that is so many deviations from one look to the
 /// next.
-const ONWARD: f64 = 0.3;
+const ONWARD: f64 = 0.1;
 const TOLD: f64 = 0.1;
 
 /// What may vary around the moments of the rows: vectors in the features' numbers, each as long as one deviation.

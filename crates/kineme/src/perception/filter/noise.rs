@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::rows::Row;
-use crate::primitive::{ParameterSource, Vocabulary};
+use super::rows::{Row, manifold};
+use crate::primitive::Vocabulary;
 
 /// Standard deviations expected before any exemplar was seen, metres: of displacements, what people and retargeting are
 /// good for; of postures more, as people stand differently, which displacements forget.
@@ -74,8 +74,7 @@ pub(super) fn pairs<R>(
     let members: Vec<usize> = (0..rows.len())
         .filter(|&r| rows[r].primitive == primitive)
         .collect();
-    let source = vocabulary.primitives()[primitive].parameters().source();
-    let principal = matches!(source, ParameterSource::Principal { .. });
+    let principal = !manifold(&vocabulary.primitives()[primitive]);
     let pairs = match principal || members.iter().all(|&r| rows[r].parameters.is_empty()) {
         true => all_pairs(&members),
         false => neighbours(rows, &members),

@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::rows::Row;
+use super::rows::{Row, manifold};
 use crate::error::Result;
-use crate::primitive::{ParameterSource, Place, Primitive};
+use crate::primitive::{Place, Primitive};
 
 /// States within so much phase of the most probable one belong to it.
 const AROUND: f64 = 0.15;
@@ -104,12 +104,8 @@ pub(super) fn place(
     mean.extend(spread.parameters.iter().map(|p| p[0]));
     let mut deviation = vec![spread.phase[1].max(PHASE_STEP)];
     deviation.extend(spread.parameters.iter().map(|p| p[1].max(PARAMETER_STEP)));
-    let known = !matches!(
-        primitive.parameters().source(),
-        ParameterSource::Principal { .. }
-    );
     let mut at = mean.clone();
-    if known {
+    if manifold(primitive) {
         let sigma = primitive
             .fitted()
             .error

@@ -56,6 +56,14 @@ pub(super) enum Path<'a> {
 }
 
 impl Path<'_> {
+    fn is_cyclic(&self) -> bool {
+        match self {
+            Self::Exemplar(primitive, _) => primitive.is_cyclic(),
+            Self::Course(course) => course.is_cyclic(),
+            Self::Whole(_) => false,
+        }
+    }
+
     pub fn sample(&self, phase: f64) -> Sample {
         match self {
             Self::Exemplar(primitive, i) => primitive.registered(*i, phase),
@@ -136,13 +144,8 @@ fn rows_of(index: usize, primitive: &Primitive, most: usize, finer: f64) -> Resu
         .map(|k| k * n / taken)
         .map(|i| {
             let path = Path::Exemplar(primitive, i);
-            row(
-                index,
-                primitive,
-                Some(i),
-                primitive.point(i).to_vec(),
-                (&path, finer),
-            )
+            let p = primitive.point(i).to_vec();
+            row(index, &path, Some(i), p, finer)
         })
         .collect();
     // What a recording does beside its cycle (a turn on the way) would else be forgotten.
@@ -161,7 +164,7 @@ fn rows_of(index: usize, primitive: &Primitive, most: usize, finer: f64) -> Resu
         let outside = moved.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) > 1e-6;
         if rows.len() < most.max(taken) && !outside && !rows.iter().any(near) {
             let path = Path::Course(course);
-            rows.push(row(index, primitive, None, p, (&path, finer)));
+            rows.push(row(index, &path, None, p, finer));
         }
     }
     Ok(rows)
@@ -202,12 +205,12 @@ fn grid(primitive: &Primitive) -> Vec<Vec<f64>> {
 
 fn row(
     index: usize,
-    primitive: &Primitive,
+    path: &Path<'_>,
     exemplar: Option<usize>,
     parameters: Vec<f64>,
-    (path, finer): (&Path<'_>, f64),
+    finer: f64,
 ) -> Row {
-    let cyclic = primitive.is_cyclic();
+    let cyclic = path.is_cyclic();
     let clock = Clock::of(path, cyclic);
     let whole = clock.duration_secs();
     let most = (MOST as f64 * finer) as usize;
