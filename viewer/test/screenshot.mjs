@@ -6,12 +6,12 @@ import { executablePath, launch, open, redrawn, until } from "./browser.mjs";
 const [file, picture] = process.argv.slice(2);
 if (!executablePath) throw new Error("no Chromium here (Debian: apt install chromium; or KINEME_CHROMIUM names one)");
 const browser = await launch();
-const { page } = await open(browser, pathToFileURL(resolve(file)).href, { viewport: { width: 860, height: 800 }, reducedMotion: "reduce" });
+const { page } = await open(browser, pathToFileURL(resolve(file)).href, { viewport: { width: 800, height: 800 }, reducedMotion: "reduce" });
 const stage = "#stage canvas";
 await until(page, () => document.querySelector("#stage canvas")?.dataset.drawn !== undefined);
 await redrawn(page, stage, () => page.evaluate(() => {
   const clock = document.querySelector("#stage .scrub");
-  clock.value = String(0.505 * Number(clock.max));
+  clock.value = String(0.268 * Number(clock.max));
   clock.dispatchEvent(new Event("input"));
   document.querySelector("#stage").scrollIntoView();
   // Even colours pack small.

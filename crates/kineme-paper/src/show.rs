@@ -8,6 +8,7 @@ use kineme::perception::encoding::{EffectorPaths, Encoder, Encoding, EncodingSet
 use kineme::perception::{Filter, FilterSettings, Restriction, calibrated};
 use kineme::primitive::{Observations, Reading, Recogniser, readings};
 use kineme::{Motion, Root, Skeleton, Vocabulary};
+use rayon::prelude::*;
 
 use crate::choreographies::{SCRIPTS, choreography, everything};
 use crate::sets::Result;
@@ -141,12 +142,16 @@ pub fn show(seed: u64, watch: &mut dyn FnMut(Act)) -> Result<Show> {
 
     watch(Act::Reading);
     let seen = Observations::complete(by_ares.done.clone());
-    let filter = Filter::new(&movements, &FilterSettings::default())?;
-    let readings = readings(&filter, &seen)?;
-    let parts = parts_of(&routine)
-        .into_iter()
-        .map(|names| read(&movements, names, &seen))
-        .collect::<Result<_>>()?;
+    let whole = || -> Result<Vec<Reading>> {
+        let filter = Filter::new(&movements, &FilterSettings::default())?;
+        Ok(readings(&filter, &seen)?)
+    };
+    let of_parts = || -> Result<Vec<PartRead>> {
+        let parts = parts_of(&routine).into_par_iter();
+        parts.map(|names| read(&movements, names, &seen)).collect()
+    };
+    let (readings, parts) = rayon::join(whole, of_parts);
+    let (readings, parts) = (readings?, parts?);
     let settings = EncodingSettings::default();
     let encoder = Encoder::new(&movements, &settings)?;
     let paths =

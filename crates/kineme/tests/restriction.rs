@@ -218,6 +218,7 @@ fn what_is_no_part_and_what_nothing_moves_is_refused() {
         still,
         "no primitive moves left_leg; the vocabulary's move left_arm, right_arm, trunk"
     );
+    assert!(Restriction::new(&vocabulary, &[]).is_err(), "nothing");
     let other = of_adonis()[0].exemplars()[0].motion.clone();
     let restriction = Restriction::new(&vocabulary, &names(&["left_arm"])).expect("a part");
     assert!(restriction.motion(&other).is_err(), "another body");

@@ -1,6 +1,6 @@
 //! [`Restriction`]: what a part of the body does, whatever the rest of it does meanwhile.
 //!
-//! Primitives superpose (paper, section III): an arm may wave while the trunk twists, and the posture is then that of no
+//! Primitives superpose (paper, abstract): an arm may wave while the trunk twists, and the posture is then that of no
 //! primitive. Seen by its arm alone the body waves, and by its trunk alone it twists. So a vocabulary is restricted to a
 //! part: all other joints of its exemplars are put at neutral, and so are those of what is observed. What is left is a
 //! vocabulary and an observation like any other, and every recogniser works on them as it is.
@@ -44,8 +44,14 @@ impl Restriction {
     /// whole body it is the vocabulary itself; else recognisers have learned nothing of it yet ([`Self::calibrated`]).
     ///
     /// # Errors
-    /// For a name that is neither a part nor a joint of the body; when no primitive moves them.
+    /// Without names; for one that is neither a part nor a joint of the body; when no primitive moves them.
     pub fn new(vocabulary: &Vocabulary, names: &[String]) -> Result<Self> {
+        if names.is_empty() {
+            return Err(Error::invalid(format!(
+                "no part of the body to look at; there are {}",
+                PARTS.join(", ")
+            )));
+        }
         let body = vocabulary.body();
         let joints = JointSet::named(body, names)?;
         let whole = joints.is_whole(body);
