@@ -1,4 +1,4 @@
-//! Movements played slower or faster than anybody was seen to do them.
+//! Movements played slower or faster than anybody was seen to do them, and movements of no known kind.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -7,8 +7,8 @@ use kineme::choreography::{Key, perform};
 use kineme::perception::{Filter, FilterSettings};
 use kineme::primitive::{Interpolation, Observations, Recogniser};
 use kineme::{
-    Exemplar, Modelling, Motion, Primitive, Provenance, Role, Skeleton, Transitions, Vocabulary,
-    adonis,
+    Exemplar, Modelling, Motion, Primitive, Provenance, Role, Root, Skeleton, Transitions,
+    Vocabulary, adonis,
 };
 
 /// How often the arm goes up and down again, in the same time.
@@ -69,4 +69,24 @@ fn a_clip_played_at_half_or_double_speed_keeps_its_name() {
             );
         }
     }
+}
+
+#[test]
+fn what_is_none_of_the_primitives_still_has_a_likeliest_one() {
+    let body = Arc::new(adonis().expect("a body"));
+    let vocabulary = vocabulary(&body);
+    let filter = Filter::new(&vocabulary, &FilterSettings::default()).expect("a filter");
+    let flung = |f: usize| -> Vec<f64> {
+        let angle = if f % 20 < 10 { 2.5 } else { -2.5 };
+        vec![angle; body.dof()]
+    };
+    let poses: Vec<f64> = (0..120).flat_map(flung).collect();
+    let roots = vec![Root::ORIGIN; 120];
+    let motion = Motion::new("flung", Arc::clone(&body), 60.0, poses, roots).expect("a motion");
+    let told = filter.recognise(&Observations::complete(motion));
+    let p = told.expect("an answer").posterior;
+    assert!(p.none > 0.99 && p.none < 1.0, "{p:?}");
+    assert!(p.primitives.iter().any(|&v| v > 0.0), "{p:?}");
+    let sum = p.none + p.rest + p.primitives.iter().sum::<f64>();
+    assert!((sum - 1.0).abs() < 1e-9, "{p:?}");
 }

@@ -157,3 +157,72 @@ fn places() -> Vec<f64> {
         .map(|k| k as f64 / (FRAMES - 1) as f64)
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SECS: f64 = 2.0;
+
+    /// Two numbers that go round a circle so many times, at so many frames, about a place.
+    fn round(times: f64, frames: usize, about: [f64; 2]) -> Vec<f64> {
+        let at = |f: usize| {
+            let angle = times * std::f64::consts::TAU * f as f64 / (frames - 1) as f64;
+            [about[0] + angle.cos(), about[1] + angle.sin()]
+        };
+        (0..frames).flat_map(at).collect()
+    }
+
+    /// The shapes of one round and of two; a deviation of 0.1, trusted twice a second.
+    fn shapes() -> Shapes {
+        let parts = vec![Part {
+            range: 0..2,
+            trust_per_sec: SECS,
+            directions: 20,
+            covariance: DMatrix::identity(2, 2) * 0.01,
+        }];
+        let rows = [1.0, 2.0].map(|times| shape(&round(times, FRAMES, [0.0; 2]), 2));
+        let postures = rows.concat();
+        Shapes {
+            complete: Whitened::new(&parts, &postures, &[]).expect("whitened"),
+            postures,
+            parts,
+        }
+    }
+
+    #[test]
+    fn neither_pace_nor_place_changes_a_shape() {
+        let shapes = shapes();
+        for (frames, about) in [
+            (64, [0.0, 0.0]),
+            (32, [0.3, 0.0]),
+            (127, [0.0, -2.0]),
+            (190, [1.0, 1.0]),
+        ] {
+            for (row, times) in [1.0, 2.0].into_iter().enumerate() {
+                let distances = shapes.distances(&round(times, frames, about), &[]);
+                let distances = distances.expect("distances");
+                let case = format!("{times} at {frames}: {distances:?}");
+                assert!(distances[row] < 2.0, "{case}");
+                assert!(distances[1 - row] > 20.0, "{case}");
+            }
+        }
+    }
+
+    #[test]
+    fn distances_are_in_deviations_and_as_long_as_they_are_trusted() {
+        // Unwarped, as what stays the same wherever in time has nothing to be warped to.
+        let still = shape(&vec![0.0; 2 * FRAMES], 2);
+        let mut shapes = shapes();
+        shapes.postures = [round(1.0, FRAMES, [0.0; 2]), still.clone()].concat();
+        shapes.complete = Whitened::new(&shapes.parts, &shapes.postures, &[]).expect("whitened");
+        let of = |unknown: &[bool]| shapes.distances(&still, unknown).expect("distances");
+        let all = of(&[]);
+        // A circle of 10 deviations about its middle; the frame that ends it, where it began, is off by little.
+        assert!((all[0] / (SECS * 100.0) - 1.0).abs() < 0.05, "{all:?}");
+        assert!(all[1] < 1e-9, "{all:?}");
+        let half = of(&[true, false]);
+        assert!((half[0] / (SECS * 50.0) - 1.0).abs() < 0.05, "{half:?}");
+        assert_eq!(of(&[true, true]), [0.0, 0.0]);
+    }
+}
