@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use kineme::choreography::{Key, perform};
-use kineme::perception::{Filter, FilterSettings};
+use kineme::perception::{Filter, FilterSettings, calibrated};
 use kineme::primitive::{Interpolation, Observations, Recogniser};
 use kineme::{
     Exemplar, Modelling, Motion, Primitive, Provenance, Role, Root, Skeleton, Transitions,
@@ -89,4 +89,17 @@ fn what_is_none_of_the_primitives_still_has_a_likeliest_one() {
     assert!(p.primitives.iter().any(|&v| v > 0.0), "{p:?}");
     let sum = p.none + p.rest + p.primitives.iter().sum::<f64>();
     assert!((sum - 1.0).abs() < 1e-9, "{p:?}");
+}
+
+#[test]
+fn what_an_earlier_build_kept_is_learned_anew() {
+    let body = Arc::new(adonis().expect("a body"));
+    let vocabulary = vocabulary(&body);
+    let learned = vocabulary.calibration("filter").expect("learned").clone();
+    let mut old = learned.clone();
+    old.shared[0] -= 1.0;
+    old.primitives = vec![vec![1.0]; SWINGS.len()];
+    let before = vocabulary.clone().calibrated(old).expect("as it was kept");
+    let now = calibrated(before.clone(), Some(&before)).expect("calibrated");
+    assert_eq!(now.calibration("filter"), Some(&learned));
 }

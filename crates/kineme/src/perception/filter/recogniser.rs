@@ -139,6 +139,11 @@ impl<'v> Filter<'v> {
         Ok(learn(&filter, &kept)?.calibration())
     }
 
+    /// Whether numbers that a vocabulary keeps mean what they mean to this filter.
+    pub(in crate::perception) fn understands(calibration: &Calibration) -> bool {
+        Learned::of(calibration).is_some()
+    }
+
     /// The evidence of a clip.
     pub(super) fn evidence(&self, seen: &Observations) -> Result<Evidence> {
         let model = &self.clips;
