@@ -9,7 +9,7 @@ use crate::primitive::{Calibration, Primitive, Vocabulary};
 ///
 /// `before` is the vocabulary that it was made from. A primitive with the same exemplars and the same fit, whatever its
 /// name, keeps its numbers; those of others and those of the whole are fitted anew. Where all primitives stayed, nothing
-/// is fitted. A recogniser that cannot watch the body learns nothing.
+/// is fitted. Numbers that an earlier build kept, and that mean something else by now, are fitted anew. A recogniser that cannot watch the body learns nothing.
 ///
 /// # Errors
 /// When a recogniser cannot be fitted.
@@ -17,9 +17,12 @@ pub fn calibrated(vocabulary: Vocabulary, before: Option<&Vocabulary>) -> Result
     if vocabulary.primitives().is_empty() {
         return Ok(vocabulary);
     }
-    let mut learned = vec![learn("filter", Filter::calibration, &vocabulary, before)?];
+    let known = |recogniser: &str| Some((before?, before?.calibration(recogniser)?));
+    let of_filter = known("filter").filter(|(_, c)| Filter::understands(c));
+    let mut learned = vec![learn(Filter::calibration, &vocabulary, of_filter)?];
     if Encoder::can_watch(vocabulary.body()) {
-        learned.push(learn("encoder", Encoder::calibration, &vocabulary, before)?);
+        let of_encoder = known("encoder");
+        learned.push(learn(Encoder::calibration, &vocabulary, of_encoder)?);
     }
     let mut all = learned.into_iter();
     all.try_fold(vocabulary, Vocabulary::calibrated)
@@ -28,14 +31,12 @@ pub fn calibrated(vocabulary: Vocabulary, before: Option<&Vocabulary>) -> Result
 /// How a recogniser learns, with numbers of primitives that it is to keep.
 type Learn = fn(&Vocabulary, &[Option<Vec<f64>>]) -> Result<Calibration>;
 
-/// What a recogniser learns of a vocabulary beyond what it knew before.
+/// What a recogniser learns of a vocabulary beyond what it knew of the one before.
 fn learn(
-    recogniser: &str,
     learn: Learn,
     vocabulary: &Vocabulary,
-    before: Option<&Vocabulary>,
+    known: Option<(&Vocabulary, &Calibration)>,
 ) -> Result<Calibration> {
-    let known = before.and_then(|b| Some((b, b.calibration(recogniser)?)));
     let Some((before, known)) = known else {
         return learn(vocabulary, &[]);
     };

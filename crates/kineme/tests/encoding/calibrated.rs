@@ -7,17 +7,22 @@ use kineme::{Modelling, Primitive, Transitions, Vocabulary};
 
 use crate::vocabulary::{NAMES, made, paths, vocabulary, vocabulary_of};
 
-/// Numbers that no fit gives: 1000 and more.
+/// Numbers that no fit gives: 1000 and more. The first that the whole of the filter has is its edition, and stays.
 fn hand_made(vocabulary: &Vocabulary, of: &Calibration) -> Calibration {
     let number = |p: usize, i: usize| 1000.0 + (10 * p + i) as f64;
     let length = |p: usize| of.primitives[p].len();
     let primitives = 0..vocabulary.primitives().len();
+    let edition = (of.recogniser == "filter").then(|| of.shared[0]);
+    let mut shared: Vec<f64> = (0..of.shared.len()).map(|i| number(100, i)).collect();
+    if let Some(edition) = edition {
+        shared[0] = edition;
+    }
     Calibration {
         recogniser: of.recogniser.clone(),
         primitives: primitives
             .map(|p| (0..length(p)).map(|i| number(p, i)).collect())
             .collect(),
-        shared: (0..of.shared.len()).map(|i| number(100, i)).collect(),
+        shared,
     }
 }
 

@@ -2,5 +2,6 @@
 
 mod baselines;
 mod clips;
+mod paces;
 mod routes;
 mod streams;

@@ -12,6 +12,15 @@ const REST_SECS: f64 = 0.3;
 /// Probability that a movement that has ended begins again.
 const AGAIN: f64 = 0.1;
 
+/// How much squared distances of the whole clip count a second, beside those of its moments: none below 0.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Trusts {
+    /// Of routes: where people went their own ways, hardly at all.
+    pub route: f64,
+    /// Of shapes: where the pace tells movements apart, or postures are noise, hardly at all.
+    pub shape: f64,
+}
+
 /// What a clip says.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Evidence {
@@ -19,6 +28,8 @@ pub(super) struct Evidence {
     pub rows: Vec<f64>,
     /// Squared distance of each row's route, in deviations; `None` where routes tell nothing.
     pub routes: Option<Vec<f64>>,
+    /// Squared distance a second of each row's shape; `None` where rows have none.
+    pub shapes: Option<Vec<f64>>,
     /// Log-likelihood of movement of no known kind.
     pub broad: f64,
     /// Seconds of the clip.
@@ -31,11 +42,13 @@ impl Evidence {
         self.secs.max(0.1)
     }
 
-    /// Log-likelihood of each row by its postures and by its route, which is trusted so much a second.
-    pub fn weighed(&self, route_trust: f64) -> Vec<f64> {
+    /// Log-likelihood of each row by its postures from moment to moment, its route and its shape.
+    pub fn weighed(&self, trusts: Trusts) -> Vec<f64> {
         let mut rows = self.rows.clone();
-        for (log, distance) in rows.iter_mut().zip(self.routes.iter().flatten()) {
-            *log -= 0.5 * route_trust * self.lasts() * distance;
+        for (trust, distances) in [(trusts.route, &self.routes), (trusts.shape, &self.shapes)] {
+            for (log, distance) in rows.iter_mut().zip(distances.iter().flatten()) {
+                *log -= 0.5 * trust * self.lasts() * distance;
+            }
         }
         rows
     }
@@ -123,6 +136,7 @@ pub(super) fn evidence<'a>(
     Evidence {
         rows: logs,
         routes: None,
+        shapes: None,
         broad,
         secs,
     }

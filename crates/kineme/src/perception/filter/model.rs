@@ -109,6 +109,25 @@ impl Model {
         })
     }
 
+    /// The parts of postures alone, without displacements: ranges are of a posture's numbers.
+    pub fn posture_parts(&self) -> Vec<Part> {
+        let still = self.layout.still();
+        let mut end = 0;
+        let of = |part: &Part| {
+            let own: Vec<usize> = (0..part.range.len())
+                .filter(|i| still[part.range.start + i])
+                .collect();
+            let start = end;
+            end += own.len();
+            Part {
+                range: start..end,
+                covariance: part.covariance.select_rows(&own).select_columns(&own),
+                ..part.clone()
+            }
+        };
+        self.parts.iter().map(of).collect()
+    }
+
     /// How well moments fit the rows without the numbers that are unknown: the Gaussian's marginal.
     pub fn without(&self, unknown: &[bool]) -> Result<Emission> {
         Emission::new(&self.parts, &self.features, self.layout.dims(), unknown)

@@ -3,10 +3,12 @@
 use super::emission::Emission;
 use super::evidence::{Evidence, evidence};
 use super::features::{Feature, Moment};
-use super::learned::{Learned, NAME, classes, learn, scores};
+use super::learned::{Learned, NAME, classes, scores};
+use super::learning::learn;
 use super::model::Model;
 use super::patterns::Patterns;
 use super::route::Routes;
+use super::shape::Shapes;
 use super::sight::Sight;
 use super::stream::Stream;
 use super::track::Network;
@@ -23,6 +25,8 @@ const MOST_ROWS: usize = 2500;
 /// Spans of clips are told with so much hindsight, and last at least so long.
 const HINDSIGHT_SECS: f64 = 0.25;
 const DWELL_SECS: f64 = 0.2;
+/// Neither rest nor none is surer than this of a clip, so that who rules them out still hears which primitive is likeliest.
+const CERTAIN: f64 = 1.0 - 1e-6;
 
 /// How the filter listens.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,6 +74,8 @@ pub struct Filter<'v> {
     complete: Emission,
     /// Where the rows of clips lead.
     routes: Option<Routes>,
+    /// How they go as a whole.
+    shapes: Option<Shapes>,
     pub(super) patterns: Patterns,
     pub(super) network: Network,
     /// The same where movements are carried out exactly.
@@ -104,6 +110,12 @@ impl<'v> Filter<'v> {
         Ok(Self {
             complete: clips.without(&[])?,
             routes: Routes::new(vocabulary, &clips.rows)?,
+            shapes: Shapes::new(
+                vocabulary,
+                &clips.rows,
+                &clips.layout,
+                clips.posture_parts(),
+            )?,
             patterns: Patterns::new(&stream)?,
             network: Network::new(vocabulary, &stream.rows, false, stream.lasting.is_some()),
             exact_network: Network::new(vocabulary, &stream.rows, true, false),
@@ -127,12 +139,18 @@ impl<'v> Filter<'v> {
         Ok(learn(&filter, &kept)?.calibration())
     }
 
+    /// Whether numbers that a vocabulary keeps mean what they mean to this filter.
+    pub(in crate::perception) fn understands(calibration: &Calibration) -> bool {
+        Learned::of(calibration).is_some()
+    }
+
     /// The evidence of a clip.
     pub(super) fn evidence(&self, seen: &Observations) -> Result<Evidence> {
         let model = &self.clips;
         let mut sight = Sight::new(model);
         let frames = self.looked_at(seen);
         let moments: Vec<Moment> = frames.map(|f| sight.see(&seen.at(f))).collect();
+        let postures: Vec<f64> = moments.iter().flat_map(|m| m.posture.clone()).collect();
         let features = model.of_clip(moments);
         let unknown = lasting(&features);
         let marginal: Emission;
@@ -147,6 +165,11 @@ impl<'v> Filter<'v> {
         let mut evidence = evidence(&model.rows, emission, moments);
         let routes = self.routes.as_ref();
         evidence.routes = routes.and_then(|r| r.distances(seen.motion()));
+        if let Some(shapes) = &self.shapes {
+            let still = model.layout.still().into_iter().zip(unknown);
+            let unknown: Vec<bool> = still.filter(|(s, _)| *s).map(|(_, u)| u).collect();
+            evidence.shapes = Some(shapes.distances(&postures, &unknown)?);
+        }
         Ok(evidence)
     }
 
@@ -161,7 +184,7 @@ impl<'v> Filter<'v> {
     fn judged(&self, seen: &Observations, share: &Share) -> Result<(Posterior, f64, Vec<f64>)> {
         let evidence = self.evidence(seen)?;
         let rows = &self.clips.rows;
-        let weighed = evidence.weighed(self.learned.route_trust);
+        let weighed = evidence.weighed(self.learned.trusts);
         let classes = classes(self, &weighed, &vec![false; rows.len()]);
         let most = classes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let temperature = self.learned.heat(&classes, &evidence);
@@ -174,8 +197,10 @@ impl<'v> Filter<'v> {
             .learned
             .unknown(&scores(&classes, &evidence, &self.learned.limits));
         // What no primitive explains from moment to moment is none of them, however alike the whole is to one.
-        let none = (1.0 / (1.0 + (-odds).exp())).max(share.unknown);
-        let resting = share.resting;
+        let none = (1.0 / (1.0 + (-odds).exp()))
+            .max(share.unknown)
+            .min(CERTAIN);
+        let resting = share.resting.min(CERTAIN);
         let share = (1.0 - resting) * (1.0 - none) / sum;
         let posterior = Posterior {
             primitives: weights.iter().map(|w| w * share).collect(),

@@ -1,0 +1,305 @@
+//! Learning of a vocabulary by leaving its exemplars out.
+
+use rayon::prelude::*;
+
+use super::evidence::{Evidence, Trusts};
+use super::learned::{Learned, SCORES, USUAL_TEMPERATURE, classes, scores, unit};
+use super::logistic::logistic;
+use super::recogniser::Filter;
+use crate::error::Result;
+use crate::math::statistics::{median, quantile};
+use crate::primitive::{Observations, ParameterSource, Vocabulary};
+
+/// At most so many exemplars are left out, and at most so many moments of rows are compared for it.
+const MOST_FOLDS: usize = 160;
+const MOST_COMPARED: f64 = 1.5e8;
+const LEAST_FOLDS: usize = 24;
+/// How much routes and shapes may count: a route a second, at most as much as one of the body's directions; a shape
+/// beside the moments, which are trusted alike.
+const TRUSTS: [f64; 4] = [0.0, 0.3, 1.0, 3.0];
+/// What it costs, in logarithms of probability, to fit the temperature e times off the usual one: where one person gave
+/// all exemplars, nothing that is left out is hard, and nothing is learned of others.
+const TEMPERATURE_PRIOR: f64 = 10.0;
+/// What this share of clips costs at most is usual.
+const KEPT: f64 = 0.95;
+/// This share of the exemplars that are left out is to be called by its name, with so much to spare in logarithms of
+/// odds.
+const CALLED: f64 = 0.98;
+const MARGIN: f64 = 2.0;
+
+/// A clip of which something is left out: the primitives' log-likelihoods, the unit of their temperature, the clip, and
+/// its true primitive if that is among them.
+struct Trial {
+    classes: Vec<f64>,
+    unit: f64,
+    fold: usize,
+    truth: Option<usize>,
+}
+
+impl Trial {
+    /// Whether anything is left that it could be.
+    fn is_possible(&self) -> bool {
+        self.classes.iter().any(|c| c.is_finite())
+    }
+}
+
+/// Learns from a vocabulary's own exemplars.
+///
+/// Each is left out three times: alone, and it stands for a known movement of somebody known; with the half of every
+/// primitive's exemplars that is nearest to it, which are by the same person if persons there are, and it stands for a
+/// known movement of somebody new; and with its whole primitive, and it stands for something unknown. `kept` has limits
+/// that are not to change.
+pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned> {
+    let vocabulary = filter.vocabulary;
+    let folds = folds(filter);
+    let evidences: Vec<Evidence> = folds
+        .par_iter()
+        .map(|&(k, i)| {
+            let motion = vocabulary.primitives()[k].exemplars()[i].motion.clone();
+            filter.evidence(&Observations::complete(motion))
+        })
+        .collect::<Result<_>>()?;
+    let usual = Learned::usual(vocabulary.primitives().len());
+    let (trusts, fitted) = trusts(filter, &folds, &evidences, usual.trusts);
+    let trials = trials(filter, &folds, &evidences, trusts);
+    let temperature = fitted
+        .or_else(|| Some(chance_lead(&trials)?.max(usual.temperature)))
+        .unwrap_or(usual.temperature);
+    let mut learned = Learned {
+        temperature,
+        trusts,
+        limits: limits(vocabulary, &trials, &evidences, kept, &usual),
+        ..usual
+    };
+    refuse(&mut learned, &trials, &evidences);
+    // Streams know neither routes nor shapes.
+    let by_postures = self::trials(filter, &folds, &evidences, Trusts::default());
+    learned.unknown_per_sec = gain(&by_postures, &evidences, &learned);
+    Ok(learned)
+}
+
+/// The trusts under which the exemplars left out are told best, and the temperature; the usual ones without known
+/// trials or rivals.
+fn trusts(
+    filter: &Filter<'_>,
+    folds: &[(usize, usize)],
+    evidences: &[Evidence],
+    usual: Trusts,
+) -> (Trusts, Option<f64>) {
+    let candidates = |known: bool, usual: f64| match known {
+        true => TRUSTS.to_vec(),
+        // What nobody is told of counts nothing, however it is trusted.
+        false => vec![usual],
+    };
+    let routes = candidates(evidences.iter().any(|e| e.routes.is_some()), usual.route);
+    let shapes = candidates(evidences.iter().any(|e| e.shapes.is_some()), usual.shape);
+    let pairs = routes
+        .iter()
+        .flat_map(|&route| shapes.iter().map(move |&shape| Trusts { route, shape }));
+    let pairs: Vec<Trusts> = pairs.collect();
+    let told = |&trusts: &Trusts| {
+        let (temperature, loss) = temperature(&trials(filter, folds, evidences, trusts))?;
+        Some((trusts, temperature, loss))
+    };
+    let told: Vec<_> = pairs.par_iter().filter_map(told).collect();
+    let best = told.iter().min_by(|a, b| a.2.total_cmp(&b.2));
+    best.map_or((usual, None), |&(trusts, temperature, _)| {
+        (trusts, Some(temperature))
+    })
+}
+
+/// Learns the odds of being unknown.
+fn refuse(learned: &mut Learned, trials: &[Trial], evidences: &[Evidence]) {
+    let possible = trials.iter().filter(|t| t.is_possible());
+    let told: Vec<(&Trial, [f64; SCORES])> = possible
+        .map(|t| (t, scores(&t.classes, &evidences[t.fold], &learned.limits)))
+        .collect();
+    let known = told.iter().filter(|(t, _)| t.truth.is_some());
+    if known.clone().count() == 0 || known.clone().count() == told.len() {
+        return;
+    }
+    let examples: Vec<([f64; SCORES], bool)> = told
+        .iter()
+        .map(|(t, scores)| (*scores, t.truth.is_none()))
+        .collect();
+    (learned.scores, learned.bias) = logistic(&examples);
+    // Whatever that costs of the unknown, the known are to be called by their name: the odds of being unknown stay
+    // below the probability of the leading primitive, with a margin as people come who differ more than those seen.
+    let bare = Learned {
+        bias: 0.0,
+        ..learned.clone()
+    };
+    let room: Vec<f64> = known
+        .map(|(t, scores)| {
+            -loss(&t.classes, None, learned.temperature * t.unit) - bare.unknown(scores)
+        })
+        .collect();
+    let keeping = quantile(&room, 1.0 - CALLED).unwrap_or(learned.bias);
+    learned.bias = learned.bias.min(keeping - MARGIN);
+}
+
+/// What unknown movement is given a second, by trials that know postures alone.
+fn gain(trials: &[Trial], evidences: &[Evidence], learned: &Learned) -> f64 {
+    let gains = |unknown: bool| -> Vec<f64> {
+        let of = trials.iter().filter(|t| t.is_possible());
+        of.filter(|t| t.truth.is_none() == unknown)
+            .map(|t| scores(&t.classes, &evidences[t.fold], &learned.limits)[0])
+            .collect()
+    };
+    let (known, unknown) = (gains(false), gains(true));
+    match (quantile(&known, 1.0 - KEPT), median(&unknown)) {
+        // Between what the least of the known gains over movement of any kind, and what the unknown gains.
+        (Some(low), Some(high)) => 0.5 * (low + low.min(high)),
+        // Of single exemplars nobody knows what the known gain, but they gain more than the unknown.
+        (None, Some(high)) => high.min(learned.unknown_per_sec),
+        _ => learned.unknown_per_sec,
+    }
+}
+
+/// The exemplars that are left out, evenly taken: primitive and exemplar.
+fn folds(filter: &Filter<'_>) -> Vec<(usize, usize)> {
+    let primitives = filter.vocabulary.primitives().iter().enumerate();
+    let all: Vec<(usize, usize)> = primitives
+        .flat_map(|(k, p)| (0..p.exemplars().len()).map(move |i| (k, i)))
+        .collect();
+    let secs = |&(k, i): &(usize, usize)| {
+        filter.vocabulary.primitives()[k].exemplars()[i]
+            .motion
+            .duration_secs()
+    };
+    let frames = all.iter().map(secs).sum::<f64>() * filter.settings.clock_hz / all.len() as f64;
+    let states: usize = filter.clips.rows.iter().map(|r| r.phases.len()).sum();
+    let affordable = (MOST_COMPARED / (frames * states as f64).max(1.0)) as usize;
+    let count = all.len().min(affordable.clamp(LEAST_FOLDS, MOST_FOLDS));
+    (0..count).map(|f| all[f * all.len() / count]).collect()
+}
+
+/// Whether the parameters of a primitive were found in what people did, not chosen.
+fn principal(vocabulary: &Vocabulary, primitive: usize) -> bool {
+    let source = vocabulary.primitives()[primitive].parameters().source();
+    matches!(source, ParameterSource::Principal { .. })
+}
+
+fn trials(
+    filter: &Filter<'_>,
+    folds: &[(usize, usize)],
+    evidences: &[Evidence],
+    trusts: Trusts,
+) -> Vec<Trial> {
+    let rows = &filter.clips.rows;
+    let mut trials = Vec::new();
+    for (fold, (&(k, i), evidence)) in folds.iter().zip(evidences).enumerate() {
+        let alone: Vec<bool> = rows
+            .iter()
+            .map(|r| r.primitive == k && r.exemplar == Some(i))
+            .collect();
+        let weighed = evidence.weighed(trusts);
+        let mut trial = |left_out: &[bool], truth: Option<usize>| {
+            let classes = classes(filter, &weighed, left_out);
+            trials.push(Trial {
+                unit: unit(&classes, evidence.lasts()),
+                classes,
+                fold,
+                truth,
+            });
+        };
+        let others = (0..rows.len()).filter(|&r| rows[r].primitive == k && !alone[r]);
+        if others.count() > 0 {
+            trial(&alone, Some(k));
+            // A grid of parameters is nobody's: its exemplars are by one hand.
+            if principal(filter.vocabulary, k) {
+                trial(&nearest_half(filter, &weighed, &alone), Some(k));
+            }
+        }
+        let whole: Vec<bool> = rows.iter().map(|r| r.primitive == k).collect();
+        trial(&whole, None);
+    }
+    trials
+}
+
+/// Leaves out the half of each primitive's rows that is likeliest beside those that are left out already. Rivals lose
+/// theirs as well: whoever is new is so in all movements.
+fn nearest_half(filter: &Filter<'_>, of_rows: &[f64], left_out: &[bool]) -> Vec<bool> {
+    let rows = &filter.clips.rows;
+    let mut all = left_out.to_vec();
+    for k in 0..filter.vocabulary.primitives().len() {
+        if !principal(filter.vocabulary, k) {
+            continue;
+        }
+        let mut own: Vec<usize> = (0..rows.len())
+            .filter(|&r| rows[r].primitive == k && !left_out[r])
+            .collect();
+        own.sort_by(|&a, &b| of_rows[b].total_cmp(&of_rows[a]));
+        for &r in &own[..own.len() / 2] {
+            all[r] = true;
+        }
+    }
+    all
+}
+
+/// What clips of each primitive cost at most, as a rule; of primitives that say nothing the median of the others.
+fn limits(
+    vocabulary: &Vocabulary,
+    trials: &[Trial],
+    evidences: &[Evidence],
+    kept: &[Option<f64>],
+    usual: &Learned,
+) -> Vec<f64> {
+    let costs = |k: usize| -> Vec<f64> {
+        let own = trials.iter().filter(|t| t.truth == Some(k));
+        own.map(|t| -t.classes[k] / evidences[t.fold].lasts())
+            .collect()
+    };
+    let of = |k: usize| quantile(&costs(k), KEPT).filter(|l| *l > 0.0);
+    let found: Vec<Option<f64>> = (0..vocabulary.primitives().len())
+        .map(|k| kept.get(k).copied().flatten().or_else(|| of(k)))
+        .collect();
+    let known: Vec<f64> = found.iter().copied().flatten().collect();
+    let middle = median(&known).unwrap_or(usual.limits[0]);
+    found.into_iter().map(|l| l.unwrap_or(middle)).collect()
+}
+
+/// The temperature at which the truth is most probable, and what it then costs; `None` without known trials or rivals.
+fn temperature(trials: &[Trial]) -> Option<(f64, f64)> {
+    let known: Vec<(&Trial, usize)> = trials
+        .iter()
+        .filter_map(|t| Some((t, t.truth?)))
+        .filter(|(t, _)| t.classes.len() > 1)
+        .collect();
+    if known.is_empty() {
+        return None;
+    }
+    let all = |t: f64| -> f64 {
+        let of =
+            |(trial, truth): &(&Trial, usize)| loss(&trial.classes, Some(*truth), t * trial.unit);
+        let off = (t / USUAL_TEMPERATURE).ln();
+        known.iter().map(of).sum::<f64>() + TEMPERATURE_PRIOR * off * off
+    };
+    let candidates = (0..=60).map(|k| 10f64.powf(-1.5 + 3.0 * f64::from(k) / 60.0));
+    let with_loss = candidates.map(|t| (t, all(t)));
+    with_loss.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// How far the likeliest of wrong answers leads the second, as a rule, in units of temperature: less than that tells nothing.
+/// It stands for the temperature where every primitive has one exemplar, and nothing known can be left out. `None` where
+/// less than three primitives are.
+fn chance_lead(trials: &[Trial]) -> Option<f64> {
+    let lead = |trial: &Trial| {
+        let mut classes = trial.classes.clone();
+        classes.sort_by(|a, b| b.total_cmp(a));
+        let [first, second] = *classes.first_chunk()?;
+        Some((first - second) / trial.unit).filter(|lead| lead.is_finite())
+    };
+    let unknown = trials.iter().filter(|t| t.truth.is_none());
+    median(&unknown.filter_map(lead).collect::<Vec<f64>>())
+}
+
+/// Less the logarithm of a primitive's probability among all, of the most probable one if none is named.
+fn loss(classes: &[f64], of: Option<usize>, temperature: f64) -> f64 {
+    let most = classes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let sum: f64 = classes
+        .iter()
+        .map(|c| ((c - most) / temperature).exp())
+        .sum();
+    sum.ln() - of.map_or(0.0, |k| (classes[k] - most) / temperature)
+}
