@@ -35,11 +35,15 @@ pub fn embedded(
     let kept = |n: usize| n.is_multiple_of(every.max(1));
     animated.retain(|_| number.next().is_some_and(kept));
     let sets: [(&[Clip], Altered); 2] = [(&own, Altered::Nothing), (&animated, Altered::Hands)];
+    let judges: Vec<Judge> = MODES
+        .iter()
+        .map(|mode| Judge::new(*mode, vocabulary))
+        .collect::<Result<_>>()?;
     let mut rows = Vec::new();
     for (set, (clips, altered)) in SETS.iter().zip(sets) {
         let clips: Vec<&Clip> = clips.iter().collect();
-        for mode in MODES {
-            rows.push(Judge::new(mode, vocabulary)?.row(set, &clips, altered)?);
+        for judge in &judges {
+            rows.push(judge.row(set, &clips, altered)?);
         }
     }
     Ok(rows)
