@@ -6,9 +6,10 @@ use super::evidence::{Evidence, Trusts};
 use super::learned::{Learned, SCORES, USUAL_TEMPERATURE, classes, scores, unit};
 use super::logistic::logistic;
 use super::recogniser::Filter;
+use super::rows::manifold;
 use crate::error::Result;
 use crate::math::statistics::{median, quantile};
-use crate::primitive::{Observations, ParameterSource, Vocabulary};
+use crate::primitive::{Observations, Vocabulary};
 
 /// At most so many exemplars are left out, and at most so many moments of rows are compared for it.
 const MOST_FOLDS: usize = 160;
@@ -174,12 +175,6 @@ fn folds(filter: &Filter<'_>) -> Vec<(usize, usize)> {
     (0..count).map(|f| all[f * all.len() / count]).collect()
 }
 
-/// Whether the parameters of a primitive were found in what people did, not chosen.
-fn principal(vocabulary: &Vocabulary, primitive: usize) -> bool {
-    let source = vocabulary.primitives()[primitive].parameters().source();
-    matches!(source, ParameterSource::Principal { .. })
-}
-
 fn trials(
     filter: &Filter<'_>,
     folds: &[(usize, usize)],
@@ -207,7 +202,7 @@ fn trials(
         if others.count() > 0 {
             trial(&alone, Some(k));
             // A grid of parameters is nobody's: its exemplars are by one hand.
-            if principal(filter.vocabulary, k) {
+            if !manifold(&filter.vocabulary.primitives()[k]) {
                 trial(&nearest_half(filter, &weighed, &alone), Some(k));
             }
         }
@@ -222,8 +217,8 @@ fn trials(
 fn nearest_half(filter: &Filter<'_>, of_rows: &[f64], left_out: &[bool]) -> Vec<bool> {
     let rows = &filter.clips.rows;
     let mut all = left_out.to_vec();
-    for k in 0..filter.vocabulary.primitives().len() {
-        if !principal(filter.vocabulary, k) {
+    for (k, primitive) in filter.vocabulary.primitives().iter().enumerate() {
+        if manifold(primitive) {
             continue;
         }
         let mut own: Vec<usize> = (0..rows.len())
