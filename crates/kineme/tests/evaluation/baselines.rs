@@ -7,11 +7,10 @@ use kineme::choreography::{Key, perform};
 use kineme::evaluation::{
     Constant, Features, NearestDtw, NearestDtwSettings, NearestPosture, NearestPostureSettings,
 };
-use kineme::primitive::{Interpolation, Observation, Observations, Recogniser, readings};
-use kineme::{
-    Exemplar, Modelling, Motion, Primitive, Provenance, Role, Skeleton, Transitions, Vocabulary,
-    adonis, ares,
-};
+use kineme::primitive::{Observation, Observations, Recogniser, readings};
+use kineme::{Motion, Primitive, Role, Skeleton, Transitions, Vocabulary, adonis, ares};
+
+use crate::learned;
 
 static BODY: LazyLock<Arc<Skeleton>> = LazyLock::new(|| Arc::new(adonis().expect("adonis")));
 
@@ -37,25 +36,6 @@ const CLASSES: [(&str, Role, bool, usize); 3] = [
     ("left", Role::LeftUpperArm, false, 4),
     ("aside", Role::RightUpperArm, true, 3),
 ];
-
-fn learned(name: &str, motions: impl Iterator<Item = Motion>) -> Primitive {
-    let exemplar = |(k, motion): (usize, Motion)| Exemplar {
-        provenance: Provenance {
-            motion: format!("{name}-{k}"),
-            start_secs: 0.0,
-            end_secs: motion.duration_secs(),
-            blake3: None,
-        },
-        motion,
-        adverbs: None,
-    };
-    let modelling = Modelling {
-        interpolation: Interpolation::Shepard,
-        ..Modelling::default()
-    };
-    let exemplars = motions.enumerate().map(exemplar).collect();
-    Primitive::learn(name, exemplars, &modelling).expect("a primitive")
-}
 
 fn primitive((name, arm, sideways, count): (&str, Role, bool, usize)) -> Primitive {
     let variation = |k: usize| {

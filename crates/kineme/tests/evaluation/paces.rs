@@ -5,11 +5,10 @@ use std::sync::Arc;
 
 use kineme::choreography::{Key, perform};
 use kineme::perception::{Filter, FilterSettings, calibrated};
-use kineme::primitive::{Interpolation, Observations, Recogniser};
-use kineme::{
-    Exemplar, Modelling, Motion, Primitive, Provenance, Role, Root, Skeleton, Transitions,
-    Vocabulary, adonis,
-};
+use kineme::primitive::{Observations, Recogniser};
+use kineme::{Motion, Role, Root, Skeleton, Transitions, Vocabulary, adonis};
+
+use crate::learned;
 
 /// How often the arm goes up and down again, in the same time.
 const SWINGS: [usize; 3] = [1, 2, 3];
@@ -28,24 +27,12 @@ fn swung(body: &Arc<Skeleton>, swings: usize, height: f64, secs: f64) -> Motion 
 }
 
 fn vocabulary(body: &Arc<Skeleton>) -> Vocabulary {
-    let exemplar = |motion: Motion| Exemplar {
-        provenance: Provenance {
-            motion: "swung".into(),
-            start_secs: 0.0,
-            end_secs: motion.duration_secs(),
-            blake3: None,
-        },
-        motion,
-        adverbs: None,
-    };
-    let modelling = Modelling {
-        interpolation: Interpolation::Shepard,
-        ..Modelling::default()
-    };
     let primitives = SWINGS.map(|swings| {
-        let of = |k: f64| exemplar(swung(body, swings, 50.0 + 10.0 * k, 2.0 + 0.1 * k));
-        let exemplars = (0..4).map(|k| of(f64::from(k))).collect();
-        Primitive::learn(&format!("{swings} swings"), exemplars, &modelling).expect("a primitive")
+        let of = |k: f64| swung(body, swings, 50.0 + 10.0 * k, 2.0 + 0.1 * k);
+        learned(
+            &format!("{swings} swings"),
+            (0..4).map(|k| of(f64::from(k))),
+        )
     });
     let (primitives, none) = (primitives.to_vec(), Transitions::none(SWINGS.len()));
     let vocabulary = Vocabulary::new(Arc::clone(body), primitives, vec![], none).expect("three");

@@ -6,12 +6,11 @@ use std::sync::Arc;
 use kineme::choreography::{Key, perform};
 use kineme::evaluation::{NearestDtw, NearestDtwSettings};
 use kineme::perception::{Filter, FilterSettings};
-use kineme::primitive::{Interpolation, Observations, Recogniser};
-use kineme::{
-    Exemplar, Modelling, Motion, Primitive, Provenance, Role, Root, Skeleton, Transitions,
-    Vocabulary, adonis,
-};
+use kineme::primitive::{Observations, Recogniser};
+use kineme::{Motion, Role, Root, Skeleton, Transitions, Vocabulary, adonis};
 use nalgebra::Vector3;
+
+use crate::learned;
 
 const KINDS: [(&str, f64); 3] = [("left", 1.5), ("right", -1.5), ("ahead", 0.0)];
 
@@ -36,24 +35,9 @@ fn led(body: &Arc<Skeleton>, height: f64, turn: f64, secs: f64) -> Motion {
 }
 
 fn vocabulary(body: &Arc<Skeleton>) -> Vocabulary {
-    let exemplar = |motion: Motion| Exemplar {
-        provenance: Provenance {
-            motion: "led".into(),
-            start_secs: 0.0,
-            end_secs: motion.duration_secs(),
-            blake3: None,
-        },
-        motion,
-        adverbs: None,
-    };
-    let modelling = Modelling {
-        interpolation: Interpolation::Shepard,
-        ..Modelling::default()
-    };
     let primitives = KINDS.map(|(name, turn)| {
-        let of = |k: f64| exemplar(led(body, 60.0 + 10.0 * k, turn + 0.1 * k, 1.2 + 0.1 * k));
-        let exemplars = (0..4).map(|k| of(f64::from(k))).collect();
-        Primitive::learn(name, exemplars, &modelling).expect("a primitive")
+        let of = |k: f64| led(body, 60.0 + 10.0 * k, turn + 0.1 * k, 1.2 + 0.1 * k);
+        learned(name, (0..4).map(|k| of(f64::from(k))))
     });
     let (primitives, none) = (primitives.to_vec(), Transitions::none(3));
     let vocabulary = Vocabulary::new(Arc::clone(body), primitives, vec![], none).expect("three");
