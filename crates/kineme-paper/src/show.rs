@@ -184,7 +184,8 @@ fn parts_of(plan: &Plan) -> Vec<Vec<String>> {
 
 /// What is recognised of a part of the body.
 fn read(vocabulary: &Vocabulary, names: Vec<String>, seen: &Observations) -> Result<PartRead> {
-    // What is learned by leaving exemplars out is for clips; it takes longer than all that is asked here.
+    // Of what is learned by leaving exemplars out a stream needs but one number, for which the usual one serves; to learn
+    // it takes longer than all that is asked here.
     let restriction = Restriction::new(vocabulary, &names)?;
     let filter = Filter::new(restriction.vocabulary(), &FilterSettings::default())?;
     let readings = readings(&restriction.recogniser(Box::new(filter)), seen)?;

@@ -9,7 +9,8 @@ use crate::primitive::{Calibration, Primitive, Vocabulary};
 ///
 /// `before` is the vocabulary that it was made from. A primitive with the same exemplars and the same fit, whatever its
 /// name, keeps its numbers; those of others and those of the whole are fitted anew. Where all primitives stayed, nothing
-/// is fitted. Numbers that an earlier build kept, and that mean something else by now, are fitted anew. A recogniser that cannot watch the body learns nothing.
+/// is fitted. Numbers that an earlier build kept, and that mean something else by now, are fitted anew. A recogniser that
+/// cannot watch the body learns nothing.
 ///
 /// # Errors
 /// When a recogniser cannot be fitted.
