@@ -49,12 +49,7 @@ impl Bootstrap {
         items: usize,
         statistics: impl Fn(&[u32]) -> [Option<f64>; N],
     ) -> Result<[Option<Estimate>; N]> {
-        if items == 0 || self.draws == 0 || !(self.level > 0.0 && self.level < 1.0) {
-            return Err(Error::invalid(format!(
-                "intervals need items, draws and a level between 0 and 1, found {items} items, {} draws, level {}",
-                self.draws, self.level
-            )));
-        }
+        self.check(items)?;
         let values = statistics(&vec![1; items]);
         let mut drawn: [Vec<f64>; N] = std::array::from_fn(|_| Vec::with_capacity(self.draws));
         let mut random = Pcg64::seed_from_u64(self.seed);
@@ -78,5 +73,17 @@ impl Bootstrap {
             });
         }
         Ok(estimates)
+    }
+
+    /// # Errors
+    /// Where nothing can be drawn of so many items.
+    pub(super) fn check(&self, items: usize) -> Result<()> {
+        if items == 0 || self.draws == 0 || !(self.level > 0.0 && self.level < 1.0) {
+            return Err(Error::invalid(format!(
+                "intervals need items, draws and a level between 0 and 1, found {items} items, {} draws, level {}",
+                self.draws, self.level
+            )));
+        }
+        Ok(())
     }
 }

@@ -92,6 +92,23 @@ pub fn scores(clips: &[Judged], bootstrap: &Bootstrap) -> Result<Scores> {
     Scores::of(bootstrap.estimates(clips.len(), |counts| sample.measures(counts))?)
 }
 
+/// The same of clips that were asked several times, in one split after another: `clips` holds the answers to each clip,
+/// at least one. Every answer counts alike; intervals are over clips, with all answers to them.
+///
+/// # Errors
+/// As for [`scores`].
+pub fn pooled_scores(clips: &[&[Judged]], bootstrap: &Bootstrap) -> Result<Scores> {
+    let sample = Sample::new(&clips.concat())?;
+    let pooled = |counts: &[u32]| {
+        let pairs = clips.iter().zip(counts);
+        let of_answers: Vec<u32> = pairs
+            .flat_map(|(answers, &count)| answers.iter().map(move |_| count))
+            .collect();
+        sample.measures(&of_answers)
+    };
+    Scores::of(bootstrap.estimates(clips.len(), pooled)?)
+}
+
 /// How much larger the scores of one recogniser are than those of another on the same clips, in the same order; the
 /// interval is that of the difference, both resampled together.
 ///

@@ -119,6 +119,21 @@ impl Sample {
         ]
     }
 
+    /// Whether all posteriors sum to one.
+    pub fn is_probabilistic(&self) -> bool {
+        self.probabilistic
+    }
+
+    /// The calibration error if answers were right as `is_right` says of each and its probability.
+    pub fn calibration_error(&self, is_right: impl Fn(usize, f64) -> bool) -> f64 {
+        let mut gaps = [0.0; BINS];
+        for (i, clip) in self.clips.iter().enumerate() {
+            let hit = f64::from(u8::from(is_right(i, clip.confidence)));
+            gaps[clip.bin] += clip.confidence - hit;
+        }
+        gaps.iter().map(|g: &f64| g.abs()).sum::<f64>() / self.clips.len() as f64
+    }
+
     /// The area under the curve of rejection, and the share of the unknown that is more novel than nearly all of the
     /// known; `None` without known or without unknown clips.
     fn rejection(&self, counts: &[u32]) -> Option<(f64, f64)> {

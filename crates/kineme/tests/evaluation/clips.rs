@@ -1,6 +1,9 @@
 //! Answers to whole clips: cases computed by hand, and laws.
 
-use kineme::evaluation::{Bootstrap, Confusion, Estimate, Judged, Scores, differences, scores};
+use kineme::evaluation::{
+    Bootstrap, Confusion, Estimate, Judged, Scores, calibration_by_chance, differences,
+    pooled_scores, scores,
+};
 use kineme::primitive::Posterior;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -273,4 +276,118 @@ fn differences_are_paired() {
     assert!((back.value + d.value).abs() < 1e-12 && (back.low + d.high).abs() < 1e-12);
     let same = differences(&one, &one, &bootstrap).expect("differences");
     check("itself", values(&same), [Some(0.0); 7]);
+}
+
+/// A clip of two primitives, the first answered with probability `confidence`.
+fn answered(confidence: f64, is_right: bool) -> Judged {
+    let truth = usize::from(!is_right);
+    clip(Some(truth), &[confidence, 1.0 - confidence], 0.0, 0.0, 0.0)
+}
+
+/// The mean of |K / n - p| where K is binomial.
+fn mean_deviation(n: usize, p: f64) -> f64 {
+    let log_odds = (p / (1.0 - p)).ln();
+    let mut log_probability = n as f64 * (1.0 - p).ln();
+    let mut sum = 0.0;
+    for k in 0..=n {
+        sum += log_probability.exp() * (k as f64 / n as f64 - p).abs();
+        log_probability += ((n - k) as f64 / (k + 1) as f64).ln() + log_odds;
+    }
+    sum
+}
+
+#[test]
+fn by_chance_equal_confidences_err_as_a_binomial_share_does() {
+    for (n, p) in [(1, 0.75), (10, 0.6), (118, 0.55), (400, 0.9)] {
+        let clips: Vec<Judged> = (0..n).map(|i| answered(p, i % 2 == 0)).collect();
+        let alone: Vec<&[Judged]> = clips.chunks(1).collect();
+        let chance = calibration_by_chance(&alone, &Bootstrap::default())
+            .expect("drawn")
+            .expect("probabilities");
+        let wanted = mean_deviation(n, p);
+        // Six standard errors of 2,000 draws; one draw deviates by about as much as the mean.
+        let slack = 6.0 * wanted / 2000f64.sqrt();
+        assert!(
+            (chance.mean - wanted).abs() < slack,
+            "{n} of {p}: {} for {wanted}",
+            chance.mean
+        );
+        assert!(chance.high >= chance.mean, "{n} of {p}: {chance:?}");
+        // Were the answers right or wrong by halves, it would change nothing: what is drawn is not what was measured.
+        let wrong: Vec<Judged> = (0..n).map(|_| answered(p, false)).collect();
+        let alone: Vec<&[Judged]> = wrong.chunks(1).collect();
+        let same = calibration_by_chance(&alone, &Bootstrap::default()).expect("drawn");
+        assert_eq!(same, Some(chance), "{n} of {p}");
+    }
+}
+
+#[test]
+fn by_chance_the_certain_do_not_err_and_the_binary_have_none() {
+    let certain = [answered(1.0, true), answered(1.0, false)];
+    let alone: Vec<&[Judged]> = certain.chunks(1).collect();
+    let chance = calibration_by_chance(&alone, &Bootstrap::default())
+        .expect("drawn")
+        .expect("probabilities");
+    assert_eq!((chance.mean, chance.high), (0.0, 0.0));
+    let binary = [clip(Some(0), &[1.0, 1.0], 0.0, 0.0, 0.0)];
+    let none = calibration_by_chance(&[&binary], &Bootstrap::default()).expect("drawn");
+    assert_eq!(none, None);
+    assert!(calibration_by_chance(&[], &Bootstrap::default()).is_err());
+    let never = Bootstrap {
+        draws: 0,
+        ..Bootstrap::default()
+    };
+    assert!(calibration_by_chance(&alone, &never).is_err());
+}
+
+#[test]
+fn errors_above_chance_are_as_rare_as_the_level_says() {
+    // Exactly right probabilities from .5 to 1, two hundred times sixty clips.
+    let mut random = Pcg64::seed_from_u64(5);
+    let few = Bootstrap {
+        draws: 200,
+        ..Bootstrap::default()
+    };
+    let above = (0..200).filter(|_| {
+        let clips: Vec<Judged> = (0..60)
+            .map(|_| {
+                let confidence = 0.5 + 0.5 * random.random::<f64>();
+                answered(confidence, random.random::<f64>() < confidence)
+            })
+            .collect();
+        let alone: Vec<&[Judged]> = clips.chunks(1).collect();
+        let chance = calibration_by_chance(&alone, &few)
+            .expect("drawn")
+            .expect("probabilities");
+        let measured = judged(&clips).calibration_error.expect("probabilities");
+        measured.value > chance.high
+    });
+    let above = above.count();
+    assert!((2..=22).contains(&above), "{above} of 200, 10 expected");
+}
+
+#[test]
+fn answers_to_one_clip_are_resampled_together() {
+    let clips: Vec<Judged> = (0..60).map(|i| answered(0.7, i % 3 > 0)).collect();
+    let single = scores(&clips, &Bootstrap::default()).expect("scores");
+    let alone: Vec<&[Judged]> = clips.chunks(1).collect();
+    let pooled = pooled_scores(&alone, &Bootstrap::default()).expect("scores");
+    assert_eq!(single, pooled, "one answer a clip");
+    // Each answer four times: nothing more is known.
+    let four: Vec<Vec<Judged>> = clips.iter().map(|c| vec![c.clone(); 4]).collect();
+    let four: Vec<&[Judged]> = four.iter().map(Vec::as_slice).collect();
+    let pooled = pooled_scores(&four, &Bootstrap::default()).expect("scores");
+    check("four times", values(&single), values(&pooled));
+    for (one, other) in [
+        (single.accuracy.low, pooled.accuracy.low),
+        (single.accuracy.high, pooled.accuracy.high),
+    ] {
+        assert!((one - other).abs() < 1e-12, "{one} and {other}");
+    }
+    let chance = |clips: &[&[Judged]]| {
+        calibration_by_chance(clips, &Bootstrap::default())
+            .expect("drawn")
+            .expect("probabilities")
+    };
+    assert!((chance(&alone).mean - chance(&four).mean).abs() < 1e-12);
 }
