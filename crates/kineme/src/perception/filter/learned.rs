@@ -1,5 +1,7 @@
 //! What the filter has learned of a vocabulary: how sure to be, and what is unknown.
 
+use std::f64::consts::PI;
+
 use super::evidence::{Evidence, Trusts};
 use super::recogniser::Filter;
 use crate::math::statistics::median;
@@ -8,11 +10,14 @@ use crate::primitive::Calibration;
 /// The name under which a vocabulary keeps it.
 pub(super) const NAME: &str = "filter";
 /// The first number kept: what the others mean has changed since they were first kept.
-const EDITION: f64 = 4.0;
+const EDITION: f64 = 5.0;
 /// Scores by which the unknown is told.
 pub(super) const SCORES: usize = 5;
 /// The temperature of real vocabularies.
 pub(super) const USUAL_TEMPERATURE: f64 = 1.0;
+/// Steps, in deviations, at which the belief about the temperature is summed up, to either side of its middle.
+const STEPS: i32 = 6;
+const STEP: f64 = 0.5;
 /// What a clip costs a second at the least, however exactly it was met.
 const LEAST_COST: f64 = 5.0;
 
@@ -22,12 +27,16 @@ pub(super) struct Learned {
     /// Log-likelihoods a second of clips are divided by it and by the root of what they cost at the least
     /// ([`Self::heat`]): how somebody differs lasts through a clip, so that a longer one tells hardly more.
     pub temperature: f64,
+    /// The deviation of its natural logarithm: how much less or more alike the next person may be. 0: it is known.
+    pub spread: f64,
     /// How much routes and shapes count.
     pub trusts: Trusts,
     /// Mean and deviation of each score, and its weight in the logarithm of the odds of being unknown.
     pub scores: [[f64; 3]; SCORES],
     /// The constant of those odds.
     pub bias: f64,
+    /// The covariance of those weights and, last, the constant: how sure the odds are. 0: they are known.
+    pub covariance: [[f64; SCORES + 1]; SCORES + 1],
     /// Added to the logarithm a second of unknown movement.
     pub unknown_per_sec: f64,
     /// For each primitive, what a clip of it costs a second at most, as a rule.
@@ -39,12 +48,14 @@ impl Learned {
     pub fn usual(primitives: usize) -> Self {
         Self {
             temperature: USUAL_TEMPERATURE,
+            spread: 0.0,
             trusts: Trusts {
                 route: 1.0,
                 shape: 0.3,
             },
             scores: [[0.0, 1.0, 0.0]; SCORES],
             bias: -2.0,
+            covariance: [[0.0; SCORES + 1]; SCORES + 1],
             unknown_per_sec: 0.0,
             limits: vec![300.0; primitives],
         }
@@ -55,12 +66,14 @@ impl Learned {
         let mut shared = vec![
             EDITION,
             self.temperature,
+            self.spread,
             self.trusts.route,
             self.trusts.shape,
             self.bias,
             self.unknown_per_sec,
         ];
         shared.extend(self.scores.iter().flatten());
+        shared.extend(self.covariance.iter().flatten());
         Calibration {
             recogniser: NAME.into(),
             primitives: self.limits.iter().map(|l| vec![*l]).collect(),
@@ -73,27 +86,33 @@ impl Learned {
         let [
             EDITION,
             temperature,
+            spread,
             route,
             shape,
             bias,
             unknown_per_sec,
-            scores @ ..,
+            rest @ ..,
         ] = calibration.shared.as_slice()
         else {
             return None;
         };
+        let (scores, covariance) = rest.split_at_checked(3 * SCORES)?;
         let scores = <[[f64; 3]; SCORES]>::try_from(scores.as_chunks::<3>().0).ok()?;
+        let covariance = covariance.as_chunks::<{ SCORES + 1 }>().0;
+        let covariance = <[[f64; SCORES + 1]; SCORES + 1]>::try_from(covariance).ok()?;
         let limit = |numbers: &Vec<f64>| numbers.first().copied().filter(|l| *l > 0.0);
-        let valid = *temperature > 0.0 && *route >= 0.0 && *shape >= 0.0;
+        let valid = *temperature > 0.0 && *spread >= 0.0 && *route >= 0.0 && *shape >= 0.0;
         let valid = valid && scores.iter().all(|[_, d, _]| *d > 0.0);
         Some(Self {
             temperature: Some(*temperature).filter(|_| valid)?,
+            spread: *spread,
             trusts: Trusts {
                 route: *route,
                 shape: *shape,
             },
             scores,
             bias: *bias,
+            covariance,
             unknown_per_sec: *unknown_per_sec,
             limits: calibration
                 .primitives
@@ -106,6 +125,44 @@ impl Learned {
     /// What log-likelihoods of a clip are divided by before they become probabilities.
     pub fn heat(&self, classes: &[f64], evidence: &Evidence) -> f64 {
         self.temperature * unit(classes, evidence.lasts())
+    }
+
+    /// How probable each primitive is if the clip is one of them: the mean over what the temperature may be. Of wrong
+    /// answers that one temperature would be sure of, some belief stays with the truth.
+    pub fn shares(&self, classes: &[f64], unit: f64) -> Vec<f64> {
+        let most = classes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let mut shares = vec![0.0; classes.len()];
+        let mut all = 0.0;
+        let steps = if self.spread > 0.0 { STEPS } else { 0 };
+        for z in (-steps..=steps).map(|k| STEP * f64::from(k)) {
+            let temperature = unit * self.temperature * (self.spread * z).exp();
+            let weights = classes.iter().map(|c| ((c - most) / temperature).exp());
+            let weights: Vec<f64> = weights.collect();
+            let density = (-0.5 * z * z).exp();
+            let each = density / weights.iter().sum::<f64>();
+            for (share, w) in shares.iter_mut().zip(weights) {
+                *share += each * w;
+            }
+            all += density;
+        }
+        for share in &mut shares {
+            *share /= all;
+        }
+        shares
+    }
+
+    /// The same odds as far as they can be trusted: nearer to even the less the exemplars say of such scores (MacKay 1992,
+    /// the evidence framework applied to classification: moderated outputs).
+    pub fn moderated(&self, scores: &[f64; SCORES]) -> f64 {
+        let mut x = [1.0; SCORES + 1];
+        for ((x, s), [mean, deviation, _]) in x.iter_mut().zip(scores).zip(&self.scores) {
+            *x = (s - mean) / deviation;
+        }
+        let rows = self.covariance.iter().zip(&x);
+        let variance: f64 = rows
+            .map(|(row, a)| a * row.iter().zip(&x).map(|(c, b)| c * b).sum::<f64>())
+            .sum();
+        self.unknown(scores) / (1.0 + PI / 8.0 * variance).sqrt()
     }
 
     /// The logarithm of the odds that a clip is none of the primitives.

@@ -21,6 +21,11 @@ const TRUSTS: [f64; 4] = [0.0, 0.3, 1.0, 3.0];
 /// What it costs, in logarithms of probability, to fit the temperature e times off the usual one: where one person gave
 /// all exemplars, nothing that is left out is hard, and nothing is learned of others.
 const TEMPERATURE_PRIOR: f64 = 10.0;
+/// Exemplars of a few people stand and fall together: of what they say about the next one, so much counts.
+const INDEPENDENT: f64 = 0.1;
+/// How much the temperature of the next person may differ from the usual one, before anything was learned: the deviation
+/// of its natural logarithm.
+const SPREAD: f64 = 0.7;
 /// What this share of clips costs at most is usual.
 const KEPT: f64 = 0.95;
 /// This share of the exemplars that are left out is to be called by its name, with so much to spare in logarithms of
@@ -29,12 +34,13 @@ const CALLED: f64 = 0.98;
 const MARGIN: f64 = 2.0;
 
 /// A clip of which something is left out: the primitives' log-likelihoods, the unit of their temperature, the clip, and
-/// its true primitive if that is among them.
+/// its true primitive if that is among them; whether nothing but the clip itself is left out.
 struct Trial {
     classes: Vec<f64>,
     unit: f64,
     fold: usize,
     truth: Option<usize>,
+    alone: bool,
 }
 
 impl Trial {
@@ -66,13 +72,18 @@ pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned
     let temperature = fitted
         .or_else(|| Some(chance_lead(&trials)?.max(usual.temperature)))
         .unwrap_or(usual.temperature);
+    // Whoever gave a grid of parameters is the one who moves: there is no next person to be unsure of.
+    let people = vocabulary.primitives().iter().any(|p| !manifold(p));
+    let belief = belief(&trials).filter(|_| people);
+    let (temperature, spread) = belief.unwrap_or((temperature, 0.0));
     let mut learned = Learned {
         temperature,
+        spread,
         trusts,
         limits: limits(vocabulary, &trials, &evidences, kept, &usual),
         ..usual
     };
-    refuse(&mut learned, &trials, &evidences);
+    refuse(&mut learned, &trials, &evidences, people);
     // Streams know neither routes nor shapes.
     let by_postures = self::trials(filter, &folds, &evidences, Trusts::default());
     learned.unknown_per_sec = gain(&by_postures, &evidences, &learned);
@@ -109,8 +120,8 @@ fn trusts(
     })
 }
 
-/// Learns the odds of being unknown.
-fn refuse(learned: &mut Learned, trials: &[Trial], evidences: &[Evidence]) {
+/// Learns the odds of being unknown, of `people` with how sure they are.
+fn refuse(learned: &mut Learned, trials: &[Trial], evidences: &[Evidence], people: bool) {
     let possible = trials.iter().filter(|t| t.is_possible());
     let told: Vec<(&Trial, [f64; SCORES])> = possible
         .map(|t| (t, scores(&t.classes, &evidences[t.fold], &learned.limits)))
@@ -123,7 +134,11 @@ fn refuse(learned: &mut Learned, trials: &[Trial], evidences: &[Evidence]) {
         .iter()
         .map(|(t, scores)| (*scores, t.truth.is_none()))
         .collect();
-    (learned.scores, learned.bias) = logistic(&examples);
+    let found = logistic(&examples, INDEPENDENT);
+    (learned.scores, learned.bias) = (found.scores, found.bias);
+    if people {
+        learned.covariance = found.covariance;
+    }
     // Whatever that costs of the unknown, the known are to be called by their name: the odds of being unknown stay
     // below the probability of the leading primitive, with a margin as people come who differ more than those seen.
     let bare = Learned {
@@ -132,7 +147,8 @@ fn refuse(learned: &mut Learned, trials: &[Trial], evidences: &[Evidence]) {
     };
     let room: Vec<f64> = known
         .map(|(t, scores)| {
-            -loss(&t.classes, None, learned.temperature * t.unit) - bare.unknown(scores)
+            let shares = bare.shares(&t.classes, t.unit).into_iter();
+            shares.fold(0.0, f64::max).ln() - bare.unknown(scores)
         })
         .collect();
     let keeping = quantile(&room, 1.0 - CALLED).unwrap_or(learned.bias);
@@ -189,25 +205,27 @@ fn trials(
             .map(|r| r.primitive == k && r.exemplar == Some(i))
             .collect();
         let weighed = evidence.weighed(trusts);
-        let mut trial = |left_out: &[bool], truth: Option<usize>| {
+        let mut trial = |left_out: &[bool], truth: Option<usize>, alone: bool| {
             let classes = classes(filter, &weighed, left_out);
             trials.push(Trial {
                 unit: unit(&classes, evidence.lasts()),
                 classes,
                 fold,
                 truth,
+                alone,
             });
         };
         let others = (0..rows.len()).filter(|&r| rows[r].primitive == k && !alone[r]);
         if others.count() > 0 {
-            trial(&alone, Some(k));
+            trial(&alone, Some(k), true);
             // A grid of parameters is nobody's: its exemplars are by one hand.
             if !manifold(&filter.vocabulary.primitives()[k]) {
-                trial(&nearest_half(filter, &weighed, &alone), Some(k));
+                let new = nearest_half(filter, &weighed, &alone);
+                trial(&new, Some(k), false);
             }
         }
         let whole: Vec<bool> = rows.iter().map(|r| r.primitive == k).collect();
-        trial(&whole, None);
+        trial(&whole, None, false);
     }
     trials
 }
@@ -254,6 +272,39 @@ fn limits(
     found.into_iter().map(|l| l.unwrap_or(middle)).collect()
 }
 
+/// The temperatures that are tried: twenty to a power of ten.
+fn candidates() -> impl Iterator<Item = f64> {
+    (0..=60).map(|k| 10f64.powf(-1.5 + 3.0 * f64::from(k) / 60.0))
+}
+
+/// What is believed of the next person's temperature (its geometric mean, the deviation of its natural logarithm) after
+/// the exemplars that were left out alone: Bayes' rule on a logarithmic grid, with a log-normal prior. `None` without
+/// known trials or rivals.
+///
+/// Trials with half of the exemplars left out are harder than the next person is, who meets all of them.
+fn belief(trials: &[Trial]) -> Option<(f64, f64)> {
+    let alone = trials.iter().filter(|t| t.alone && t.classes.len() > 1);
+    let known: Vec<(&Trial, usize)> = alone.filter_map(|t| Some((t, t.truth?))).collect();
+    if known.is_empty() {
+        return None;
+    }
+    let log_posterior = |t: f64| {
+        let of =
+            |(trial, truth): &(&Trial, usize)| loss(&trial.classes, Some(*truth), t * trial.unit);
+        let off = (t / USUAL_TEMPERATURE).ln() / SPREAD;
+        -INDEPENDENT * known.iter().map(of).sum::<f64>() - 0.5 * off * off
+    };
+    let all: Vec<(f64, f64)> = candidates().map(|t| (t.ln(), log_posterior(t))).collect();
+    let most = all.iter().map(|a| a.1).fold(f64::NEG_INFINITY, f64::max);
+    let sum = |of: &dyn Fn(f64) -> f64| -> f64 {
+        all.iter().map(|(log, p)| (p - most).exp() * of(*log)).sum()
+    };
+    let count = sum(&|_| 1.0);
+    let mean = sum(&|log| log) / count;
+    let variance = sum(&|log| (log - mean) * (log - mean)) / count;
+    Some((mean.exp(), variance.sqrt()))
+}
+
 /// The temperature at which the truth is most probable, and what it then costs; `None` without known trials or rivals.
 fn temperature(trials: &[Trial]) -> Option<(f64, f64)> {
     let known: Vec<(&Trial, usize)> = trials
@@ -270,8 +321,7 @@ fn temperature(trials: &[Trial]) -> Option<(f64, f64)> {
         let off = (t / USUAL_TEMPERATURE).ln();
         known.iter().map(of).sum::<f64>() + TEMPERATURE_PRIOR * off * off
     };
-    let candidates = (0..=60).map(|k| 10f64.powf(-1.5 + 3.0 * f64::from(k) / 60.0));
-    let with_loss = candidates.map(|t| (t, all(t)));
+    let with_loss = candidates().map(|t| (t, all(t)));
     with_loss.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 

@@ -3,7 +3,7 @@
 use super::emission::Emission;
 use super::evidence::{Evidence, evidence};
 use super::features::{Feature, Moment};
-use super::learned::{Learned, NAME, classes, scores};
+use super::learned::{Learned, NAME, classes, scores, unit};
 use super::learning::learn;
 use super::model::Model;
 use super::patterns::Patterns;
@@ -186,24 +186,22 @@ impl<'v> Filter<'v> {
         let rows = &self.clips.rows;
         let weighed = evidence.weighed(self.learned.trusts);
         let classes = classes(self, &weighed, &vec![false; rows.len()]);
-        let most = classes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let temperature = self.learned.heat(&classes, &evidence);
-        let weights: Vec<f64> = classes
-            .iter()
-            .map(|c| ((c - most) / temperature).exp())
-            .collect();
-        let sum: f64 = weights.iter().sum();
-        let odds = self
+        let shares = self
             .learned
-            .unknown(&scores(&classes, &evidence, &self.learned.limits));
+            .shares(&classes, unit(&classes, evidence.lasts()));
+        let scores = scores(&classes, &evidence, &self.learned.limits);
+        let odds = self.learned.unknown(&scores);
         // What no primitive explains from moment to moment is none of them, however alike the whole is to one.
-        let none = (1.0 / (1.0 + (-odds).exp()))
-            .max(share.unknown)
-            .min(CERTAIN);
+        let none_at = |odds: f64| {
+            (1.0 / (1.0 + (-odds).exp()))
+                .max(share.unknown)
+                .min(CERTAIN)
+        };
+        let none = none_at(self.learned.moderated(&scores));
         let resting = share.resting.min(CERTAIN);
-        let share = (1.0 - resting) * (1.0 - none) / sum;
+        let known = (1.0 - resting) * (1.0 - none);
         let posterior = Posterior {
-            primitives: weights.iter().map(|w| w * share).collect(),
+            primitives: shares.iter().map(|s| s * known).collect(),
             rest: resting,
             none: (1.0 - resting) * none,
         };
@@ -214,6 +212,7 @@ impl<'v> Filter<'v> {
         };
         let best = own().map(|(_, e)| *e).fold(f64::NEG_INFINITY, f64::max);
         let dims = self.vocabulary.primitives()[leading].parameters().dims();
+        let temperature = self.learned.heat(&classes, &evidence);
         let (mut total, mut parameters) = (0.0, vec![0.0; dims]);
         for (row, e) in own() {
             let w = ((e - best) / temperature).exp();
@@ -225,10 +224,12 @@ impl<'v> Filter<'v> {
         for p in &mut parameters {
             *p /= total;
         }
-        // Twice the probability where that tells, and the odds' logarithm beyond, so that no two clips look alike.
+        // Twice the probability where that tells, and the odds' logarithm beyond, so that no two clips look alike. How far
+        // odds can be trusted is no matter of how novel a clip is.
+        let plain = 2.0 * none_at(odds);
         let novelty = match odds < 0.0 {
-            true => 2.0 * none,
-            false => (1.0 + odds).max(2.0 * none),
+            true => plain,
+            false => (1.0 + odds).max(plain),
         };
         Ok((posterior, novelty, parameters))
     }
