@@ -73,6 +73,11 @@ fn unseen_motions_are_judged_beside_the_baselines() {
         (&Value::from(1.0), &Value::from(1.0))
     );
     assert!(dtw["ece"].is_f64() && dtw["log_loss"].is_f64() && dtw.get("decision_us").is_none());
+    let by_chance = numbers(&dtw["ece_by_chance"]);
+    assert!(
+        0.0 <= by_chance[0] && by_chance[0] <= by_chance[1] && by_chance[1] <= 1.0,
+        "{dtw}"
+    );
     let constant = &methods["constant"];
     assert_eq!(constant["auroc"], 0.5);
     assert!(numbers(&constant["accuracy"])[0] < 0.6);
@@ -138,7 +143,7 @@ fn classifiers_are_judged_like_the_baselines_and_reject() {
     assert!(paper["accuracy"].is_array(), "{paper}");
     let binary = "judged each by itself, answers have no calibration";
     assert!(
-        paper["ece"].is_null() && paper["log_loss"].is_null(),
+        paper["ece"].is_null() && paper["ece_by_chance"].is_null() && paper["log_loss"].is_null(),
         "{binary}: {paper}"
     );
     let table = done(at, "evaluate p.kineme m/test.csv --methods frame,encode");

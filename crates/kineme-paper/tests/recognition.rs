@@ -7,6 +7,7 @@ use kineme::evaluation::Judged;
 use kineme::primitive::Posterior;
 use kineme::{Motion, Root, ares};
 use kineme_paper::recognition::answers::{among_known, mean, rights};
+use kineme_paper::recognition::calibration::{Calibrated, line, write_calibration};
 use kineme_paper::recognition::clips::{Asked, lines, write_clips};
 use kineme_paper::recognition::corpora::{
     BANDAI_NAMCO, Corpus, HDM05, MSR, Part, Split, UTD, corpora,
@@ -135,6 +136,7 @@ fn made_up() -> Corpus {
             train: (0..6).collect(),
             test: (6..clips).collect(),
         }],
+        pooled: Vec::new(),
     }
 }
 
@@ -269,6 +271,58 @@ fn every_set_is_split_between_people_or_styles() {
             assert!(!split.test.iter().any(known), "{name}");
         }
     }
+}
+
+#[test]
+fn pooled_splits_ask_every_clip_equally_often_of_strangers() {
+    let Some(folder) = corpus() else { return };
+    // Splits, subjects learned, and how often each clip is asked.
+    for (name, splits, learned, asked) in [
+        (UTD, 6, 2, 3),
+        (MSR, 10, 3, 4),
+        (HDM05, 0, 0, 0),
+        (BANDAI_NAMCO, 7, 3, 4),
+    ] {
+        let c = part(&folder, name, 2, 1);
+        assert_eq!(c.pooled.len(), splits, "{name}");
+        let mut counts = vec![0; c.subjects.len()];
+        let mut sets = Vec::new();
+        for split in &c.pooled {
+            let mut known: Vec<&String> = split.train.iter().map(|t| &c.subjects[*t]).collect();
+            known.sort();
+            known.dedup();
+            assert_eq!(known.len(), learned, "{name}");
+            assert_eq!(split.train.len() + split.test.len(), counts.len(), "{name}");
+            for t in &split.test {
+                assert!(!known.contains(&&c.subjects[*t]), "{name}");
+                counts[*t] += 1;
+            }
+            assert!(!sets.contains(&known), "{name}: {known:?} twice");
+            sets.push(known);
+        }
+        assert!(counts.iter().all(|n| *n == asked), "{name}: {counts:?}");
+    }
+}
+
+#[test]
+fn calibration_is_told_of_one_split_and_of_all() {
+    let Some(folder) = corpus() else { return };
+    let c = part(&folder, UTD, 3, 2);
+    let asked = Asked::of(&c, &PAIR[..1]).expect("asked");
+    let of = line(&c, &asked).expect("a line");
+    let counts = |c: &Calibrated| (c.splits, c.clips, c.answers);
+    assert_eq!(counts(&of.single), (1, 12, 12));
+    assert_eq!(counts(&of.pooled), (6, 24, 72));
+    assert!(of.pooled.chance.mean < of.single.chance.mean, "{of:?}");
+    let mut out = String::new();
+    write_calibration(&mut out, &[of]).expect("written");
+    assert!(out.contains("72 answers to 24 clips, 6 splits"), "{out}");
+    let all = Corpus {
+        pooled: Vec::new(),
+        ..c
+    };
+    let of = line(&all, &asked).expect("a line");
+    assert_eq!(of.single, of.pooled, "no other splits");
 }
 
 const PAIR: [Method; 2] = [Method::Filter, Method::Dtw];

@@ -7,7 +7,9 @@ mod told;
 use std::time::Instant;
 
 use kineme::Vocabulary;
-use kineme::evaluation::{Bootstrap, Judged, Scores, differences, scores};
+use kineme::evaluation::{
+    Bootstrap, ByChance, Judged, Scores, calibration_by_chance, differences, scores,
+};
 use kineme::primitive::Recogniser;
 use rayon::prelude::*;
 
@@ -27,6 +29,8 @@ struct Outcome {
     /// Its answers, in the order of the clips.
     judged: Vec<Judged>,
     scores: Scores,
+    /// The calibration error that exactly right probabilities would show on these clips.
+    by_chance: Option<ByChance>,
     /// How much better the first method is.
     behind: Scores,
     /// The median and the 99th percentile of the time a frame takes, microseconds.
@@ -79,6 +83,7 @@ pub fn run(args: &EvaluateArgs, global: &Global) -> Result<u8, Failure> {
         outcomes.push(Outcome {
             method,
             scores: scores(&judged, &bootstrap)?,
+            by_chance: calibration_by_chance(&judged.chunks(1).collect::<Vec<_>>(), &bootstrap)?,
             behind: differences(first, &judged, &bootstrap)?,
             judged,
             decision_us,

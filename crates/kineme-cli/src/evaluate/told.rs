@@ -31,6 +31,8 @@ struct MethodLine {
     auroc: Option<f64>,
     unknowns_found: Option<f64>,
     ece: Option<f64>,
+    /// Mean and 95th percentile of the error that exactly right probabilities would show.
+    ece_by_chance: Option<[f64; 2]>,
     log_loss: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     decision_us: Option<[f64; 2]>,
@@ -53,6 +55,7 @@ pub(super) fn document(
             auroc: value(s.auroc),
             unknowns_found: value(s.unknowns_found),
             ece: value(s.calibration_error),
+            ece_by_chance: o.by_chance.map(|c| [c.mean, c.high]),
             log_loss: value(s.log_loss),
             decision_us: o.decision_us,
         };
@@ -131,7 +134,8 @@ pub(super) fn tables(
     text.push_str(&rejection(outcomes));
     text.push_str(&format!(
         "In brackets: {:.0} % of {} drawings of as many clips. Balanced: each class counts alike, and none is one. AUROC:\n\
-         how often a negative is more novel than a positive. Found: negatives more novel than 95 % of the positives.\n",
+         how often a negative is more novel than a positive. Found: negatives more novel than 95 % of the positives.\n\
+         By chance: the calibration error of exactly right probabilities on so few clips, in the mean (to what it rarely exceeds).\n",
         100.0 * bootstrap.level,
         bootstrap.draws
     ));
@@ -172,6 +176,7 @@ fn rejection(outcomes: &[Outcome]) -> String {
     let header = [
         ("method", Side::Left),
         ("calibration error", Side::Right),
+        ("by chance", Side::Right),
         ("log loss", Side::Right),
         ("AUROC", Side::Right),
         ("found", Side::Right),
@@ -180,9 +185,11 @@ fn rejection(outcomes: &[Outcome]) -> String {
         .iter()
         .map(|o| {
             let s: &Scores = &o.scores;
-            let estimates = [s.calibration_error, s.log_loss, s.auroc, s.unknowns_found];
-            let mut row = vec![name(o.method)];
-            row.extend(estimates.map(cell));
+            let chance = o.by_chance.map_or("-".into(), |c| {
+                format!("{} (to {})", number(c.mean), number(c.high))
+            });
+            let mut row = vec![name(o.method), cell(s.calibration_error), chance];
+            row.extend([s.log_loss, s.auroc, s.unknowns_found].map(cell));
             row
         })
         .collect();

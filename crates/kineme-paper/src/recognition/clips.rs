@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use kineme::evaluation::{Bootstrap, Judged, scores};
+use kineme::evaluation::{Bootstrap, Estimate, Judged, calibration_by_chance, scores};
 
 use super::answers::{among_known, answers, as_recorded, rights};
+use super::calibration::by_chance;
 use super::corpora::{BANDAI_NAMCO, Corpus, HDM05, MSR, UTD};
 use super::known::{Known, Method};
 use super::summary::{Line, shown};
@@ -53,7 +54,11 @@ impl Asked {
         })
     }
 
-    fn of_method(&self, method: Method) -> Result<&[Judged]> {
+    /// The answers of a method, one a clip.
+    ///
+    /// # Errors
+    /// When the method was not asked.
+    pub fn of_method(&self, method: Method) -> Result<&[Judged]> {
         let asked = self.methods.iter().position(|m| *m == method);
         Ok(&self.judged[asked.ok_or("a method that was not asked")?])
     }
@@ -65,15 +70,6 @@ impl Asked {
     pub fn rights(&self, method: Method) -> Result<Vec<f64>> {
         let judged = self.of_method(method)?;
         Ok(rights(&among_known(judged, method == Method::Paper)))
-    }
-
-    /// The calibration error of the answers as they were given.
-    ///
-    /// # Errors
-    /// When the method was not asked, or gives no probabilities.
-    pub fn calibration_error(&self, method: Method) -> Result<f64> {
-        let scores = scores(self.of_method(method)?, &Bootstrap::default())?;
-        Ok(scores.calibration_error.ok_or("no probabilities")?.value)
     }
 }
 
@@ -129,7 +125,7 @@ pub fn line_beside_route(corpus: &Corpus, asked: &Asked) -> Result<Line> {
 pub fn write_clips(out: &mut String, corpus: &Corpus, asked: &Asked) -> Result<()> {
     writeln!(
         out,
-        "\n### {}: {} clips asked, {} classes\n\n| method | accuracy | macro-F1 | ECE | with rest and none: accuracy | ECE | log loss |\n| --- | --- | --- | --- | --- | --- | --- |",
+        "\n### {}: {} clips asked, {} classes\n\n| method | accuracy | macro-F1 | ECE (by chance) | with rest and none: accuracy | ECE (by chance) | log loss |\n| --- | --- | --- | --- | --- | --- | --- |",
         corpus.name,
         asked.judged[0].len(),
         corpus.set.classes.len()
@@ -138,8 +134,13 @@ pub fn write_clips(out: &mut String, corpus: &Corpus, asked: &Asked) -> Result<(
     for (method, judged) in asked.methods.iter().zip(&asked.judged) {
         let known = among_known(judged, *method == Method::Paper);
         let (closed, open) = (scores(&known, &bootstrap)?, scores(judged, &bootstrap)?);
-        let plain = |e: Option<kineme::evaluation::Estimate>| {
-            e.map_or("-".into(), |e| format!("{:.3}", e.value))
+        let plain = |e: Option<Estimate>| e.map_or("-".into(), |e| format!("{:.3}", e.value));
+        let error = |e: Option<Estimate>, judged: &[Judged]| -> Result<String> {
+            let alone: Vec<&[Judged]> = judged.chunks(1).collect();
+            Ok(match calibration_by_chance(&alone, &bootstrap)? {
+                Some(chance) => format!("{} ({})", plain(e), by_chance(&chance)),
+                None => "-".into(),
+            })
         };
         writeln!(
             out,
@@ -147,9 +148,9 @@ pub fn write_clips(out: &mut String, corpus: &Corpus, asked: &Asked) -> Result<(
             method.name(),
             shown(&closed.accuracy),
             closed.macro_f1.value,
-            plain(closed.calibration_error),
+            error(closed.calibration_error, &known)?,
             open.accuracy.value,
-            plain(open.calibration_error),
+            error(open.calibration_error, judged)?,
             plain(open.log_loss)
         )?;
     }

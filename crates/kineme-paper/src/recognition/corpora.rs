@@ -27,6 +27,9 @@ pub struct Corpus {
     pub subjects: Vec<String>,
     /// Its splits; no clip is asked in two of them.
     pub splits: Vec<Split>,
+    /// Splits of as many people or styles as those, in which every clip is asked equally often: for what needs more
+    /// answers than one split gives. None where `splits` are all there are.
+    pub pooled: Vec<Split>,
 }
 
 /// How much of a set is read.
@@ -49,6 +52,18 @@ impl Part {
 /// The published zeros of MSR-Action3D: a clip without a posture.
 const ALL_ZERO: &str = "a13_s09_e02";
 
+/// Splits that are pooled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Pool {
+    /// Those of the rows.
+    AsAsked,
+    /// Every choice of so many subjects is learned from, the others are asked.
+    EveryChoice(usize),
+    /// So many successive subjects of a ring, in the order of their names, are learned from, beginning at each; the others
+    /// are asked.
+    InTurn(usize),
+}
+
 /// Where a set is, and who is learned from: pairs of subjects learned from and asked.
 struct Plan {
     name: &'static str,
@@ -56,6 +71,7 @@ struct Plan {
     format: &'static str,
     content: bool,
     splits: &'static [(&'static [&'static str], &'static [&'static str])],
+    pool: Pool,
 }
 
 /// Styles of Bandai-Namco 2, in two halves.
@@ -76,6 +92,7 @@ const PLANS: [Plan; 4] = [
         format: "joints-csv",
         content: false,
         splits: &[(&["s1", "s3"], &["s5", "s7"])],
+        pool: Pool::EveryChoice(2),
     },
     Plan {
         name: MSR,
@@ -83,6 +100,7 @@ const PLANS: [Plan; 4] = [
         format: "msr-txt",
         content: false,
         splits: &[(&["s01", "s03", "s05"], &["s07", "s09"])],
+        pool: Pool::EveryChoice(3),
     },
     Plan {
         name: HDM05,
@@ -94,6 +112,7 @@ const PLANS: [Plan; 4] = [
             (&["bd", "dg"], &["bk"]),
             (&["bd", "bk"], &["dg"]),
         ],
+        pool: Pool::AsAsked,
     },
     Plan {
         name: BANDAI_NAMCO,
@@ -101,6 +120,7 @@ const PLANS: [Plan; 4] = [
         format: "bvh",
         content: true,
         splits: &[(STYLES[0], STYLES[1]), (STYLES[1], STYLES[0])],
+        pool: Pool::InTurn(3),
     },
 ];
 
@@ -170,6 +190,37 @@ fn read(
         name: plan.name,
         set: load(corpus, &picked, body, None, &class)?,
         splits: splits.collect(),
+        pooled: pooled(plan.pool, &subjects),
         subjects,
     })
+}
+
+/// The splits of a pool, by who moves in each clip.
+fn pooled(pool: Pool, subjects: &[String]) -> Vec<Split> {
+    let mut all: Vec<&str> = subjects.iter().map(String::as_str).collect();
+    all.sort_unstable();
+    all.dedup();
+    let chosen: Vec<Vec<bool>> = match pool {
+        Pool::AsAsked => Vec::new(),
+        Pool::EveryChoice(learned) => (0..1_u32 << all.len())
+            .filter(|bits| bits.count_ones() as usize == learned)
+            .map(|bits| (0..all.len()).map(|s| bits >> s & 1 == 1).collect())
+            .collect(),
+        Pool::InTurn(learned) => (0..all.len())
+            .map(|first| {
+                let place = |s: usize| (s + all.len() - first) % all.len();
+                (0..all.len()).map(|s| place(s) < learned).collect()
+            })
+            .collect(),
+    };
+    let split = |chosen: Vec<bool>| {
+        let is_learned = |i: &usize| {
+            all.iter()
+                .zip(&chosen)
+                .any(|(s, c)| *c && *s == subjects[*i])
+        };
+        let (train, test) = (0..subjects.len()).partition(is_learned);
+        Split { train, test }
+    };
+    chosen.into_iter().map(split).collect()
 }

@@ -1,6 +1,7 @@
 //! The tables of `docs/perception.md`: recognition of real people, beside baselines.
 
 pub mod answers;
+pub mod calibration;
 pub mod clips;
 pub mod corpora;
 pub mod damage;

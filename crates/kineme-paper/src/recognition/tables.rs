@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
+use super::calibration::{self, write_calibration};
 use super::clips::{Asked, METHODS, line_beside_route, lines, write_clips};
 use super::corpora::{BANDAI_NAMCO, HDM05, MSR, Part, UTD, corpora};
 use super::damage::{costs, write_costs};
@@ -14,14 +15,12 @@ use super::law::write_law;
 use super::open_set::{rejections, write_rejections};
 use super::peers::Peers;
 use super::streams::{dances, hear, write_streams};
-use super::summary::{verdict, write_lines};
+use super::summary::write_lines;
 use super::trials::SHOTS;
 use crate::sets::Result;
 
 /// One clip in so many is asked damaged.
 const DAMAGED: usize = 8;
-/// What the calibration error should be at most.
-const CALIBRATED: f64 = 0.05;
 
 /// Recognises every set of a corpus and writes what came of it, as Markdown. `watch` is told what is being done, and the
 /// tables one by one as they are made. With `only`, nothing is done but the stages in whose name (`HDM05: few
@@ -48,7 +47,7 @@ pub fn perception_tables(
     let (mut whole, mut hands) = (Vec::new(), Vec::new());
     let mut rest = Vec::new();
     let mut details = String::new();
-    let mut calibration = Vec::new();
+    let mut calibrated = Vec::new();
     for of in &sets {
         if !begin(format!("{}: whole clips", of.name), watch) {
             continue;
@@ -60,8 +59,9 @@ pub fn perception_tables(
             whole.push(line_beside_route(of, &asked)?);
         }
         hands.push(by_hands);
-        calibration.push((of.name, asked.calibration_error(Method::Filter)?));
         tell(&mut details, watch, |t| write_clips(t, of, &asked))?;
+        watch(&format!("{}: {} pooled splits", of.name, of.pooled.len()));
+        calibrated.push(calibration::line(of, &asked)?);
     }
     if begin("exercises".into(), watch) {
         rest.push(Exercises::read(corpus, &body)?.line()?);
@@ -115,17 +115,7 @@ pub fn perception_tables(
     write_lines(&mut out, "filter", "1NN-DTW", &whole, &peers)?;
     writeln!(out, "\n### Aims: hands alone, `encode`")?;
     write_lines(&mut out, "encode", "1NN-DTW, hands", &hands, &peers)?;
-    writeln!(
-        out,
-        "\n### Aims: calibration error of `filter`, rest and none among the answers\n\n| set | ECE | aim, at most | |\n| --- | --- | --- | --- |"
-    )?;
-    for (name, ece) in calibration {
-        writeln!(
-            out,
-            "| {name} | {ece:.3} | {CALIBRATED} | {} |",
-            verdict(-ece, Some(-CALIBRATED))
-        )?;
-    }
+    write_calibration(&mut out, &calibrated)?;
     if !peers.made_by.is_empty() {
         writeln!(out, "\nMiniRocket: {}.", peers.made_by)?;
     }

@@ -237,3 +237,76 @@ pub(super) fn scores(classes: &[f64], evidence: &Evidence, limits: &[f64]) -> [f
         cost / limits[best],
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn learned(spread: f64, variance: f64) -> Learned {
+        let mut covariance = [[0.0; SCORES + 1]; SCORES + 1];
+        for (i, row) in covariance.iter_mut().enumerate() {
+            row[i] = variance;
+        }
+        Learned {
+            temperature: 0.8,
+            spread,
+            scores: [[1.0, 2.0, 0.5]; SCORES],
+            covariance,
+            ..Learned::usual(3)
+        }
+    }
+
+    #[test]
+    fn what_is_kept_is_what_was_learned_and_older_numbers_are_not() {
+        let wanted = learned(0.6, 0.3);
+        let kept = wanted.calibration();
+        assert_eq!(Learned::of(&kept), Some(wanted));
+        for (place, value) in [(0, EDITION - 1.0), (1, 0.0), (2, -0.1)] {
+            let mut other = kept.clone();
+            other.shared[place] = value;
+            assert_eq!(Learned::of(&other), None, "number {place} is {value}");
+        }
+        let mut short = kept.clone();
+        short.shared.pop();
+        assert_eq!(Learned::of(&short), None, "a number less");
+    }
+
+    #[test]
+    fn a_spread_of_temperatures_keeps_the_order_and_gives_the_unlikely_more() {
+        let classes = [-3.0, -15.0, -4.0];
+        let (sure, unsure) = (
+            learned(0.0, 0.0).shares(&classes, 1.5),
+            learned(0.7, 0.0).shares(&classes, 1.5),
+        );
+        let weights = classes.map(|c: f64| (c / 1.2).exp());
+        let sum: f64 = weights.iter().sum();
+        for k in 0..3 {
+            assert!((sure[k] - weights[k] / sum).abs() < 1e-12, "{sure:?}");
+        }
+        assert!((unsure.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        assert!(unsure[0] > unsure[2] && unsure[2] > unsure[1], "{unsure:?}");
+        // The far tail is ruled by the highest temperatures.
+        assert!(unsure[1] > 5.0 * sure[1], "{unsure:?} and {sure:?}");
+    }
+
+    #[test]
+    fn moderated_odds_are_the_mean_probability_over_what_the_weights_may_be() {
+        for (at, variance) in [(1.0, 0.0), (3.0, 0.2), (-5.0, 0.2), (9.0, 0.5)] {
+            let l = learned(0.0, variance);
+            let scores = [at; SCORES];
+            let (plain, moderated) = (l.unknown(&scores), l.moderated(&scores));
+            let x = (at - 1.0) / 2.0;
+            let deviation = (variance * (SCORES as f64 * x * x + 1.0)).sqrt();
+            let (mut sum, mut all) = (0.0, 0.0);
+            for z in (-600..=600).map(|k| 0.01 * f64::from(k)) {
+                let density = (-0.5_f64 * z * z).exp();
+                sum += density / (1.0 + (-plain - deviation * z).exp());
+                all += density;
+            }
+            let found = 1.0 / (1.0 + (-moderated).exp());
+            let mean = sum / all;
+            assert!((found - mean).abs() < 0.02, "{at}: {found} for {mean}");
+            assert!(plain * moderated >= 0.0 && moderated.abs() <= plain.abs());
+        }
+    }
+}

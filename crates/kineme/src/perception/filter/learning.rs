@@ -3,10 +3,11 @@
 use rayon::prelude::*;
 
 use super::evidence::{Evidence, Trusts};
-use super::learned::{Learned, SCORES, USUAL_TEMPERATURE, classes, scores, unit};
+use super::learned::{Learned, SCORES, classes, scores, unit};
 use super::logistic::logistic;
 use super::recogniser::Filter;
 use super::rows::manifold;
+use super::temperature::{belief, chance_lead, temperature};
 use crate::error::Result;
 use crate::math::statistics::{median, quantile};
 use crate::primitive::{Observations, Vocabulary};
@@ -18,14 +19,8 @@ const LEAST_FOLDS: usize = 24;
 /// How much routes and shapes may count: a route a second, at most as much as one of the body's directions; a shape
 /// beside the moments, which are trusted alike.
 const TRUSTS: [f64; 4] = [0.0, 0.3, 1.0, 3.0];
-/// What it costs, in logarithms of probability, to fit the temperature e times off the usual one: where one person gave
-/// all exemplars, nothing that is left out is hard, and nothing is learned of others.
-const TEMPERATURE_PRIOR: f64 = 10.0;
 /// Exemplars of a few people stand and fall together: of what they say about the next one, so much counts.
-const INDEPENDENT: f64 = 0.1;
-/// How much the temperature of the next person may differ from the usual one, before anything was learned: the deviation
-/// of its natural logarithm.
-const SPREAD: f64 = 0.7;
+pub(super) const INDEPENDENT: f64 = 0.1;
 /// What this share of clips costs at most is usual.
 const KEPT: f64 = 0.95;
 /// This share of the exemplars that are left out is to be called by its name, with so much to spare in logarithms of
@@ -35,12 +30,12 @@ const MARGIN: f64 = 2.0;
 
 /// A clip of which something is left out: the primitives' log-likelihoods, the unit of their temperature, the clip, and
 /// its true primitive if that is among them; whether nothing but the clip itself is left out.
-struct Trial {
-    classes: Vec<f64>,
-    unit: f64,
-    fold: usize,
-    truth: Option<usize>,
-    alone: bool,
+pub(super) struct Trial {
+    pub classes: Vec<f64>,
+    pub unit: f64,
+    pub fold: usize,
+    pub truth: Option<usize>,
+    pub alone: bool,
 }
 
 impl Trial {
@@ -270,81 +265,4 @@ fn limits(
     let known: Vec<f64> = found.iter().copied().flatten().collect();
     let middle = median(&known).unwrap_or(usual.limits[0]);
     found.into_iter().map(|l| l.unwrap_or(middle)).collect()
-}
-
-/// The temperatures that are tried: twenty to a power of ten.
-fn candidates() -> impl Iterator<Item = f64> {
-    (0..=60).map(|k| 10f64.powf(-1.5 + 3.0 * f64::from(k) / 60.0))
-}
-
-/// What is believed of the next person's temperature (its geometric mean, the deviation of its natural logarithm) after
-/// the exemplars that were left out alone: Bayes' rule on a logarithmic grid, with a log-normal prior. `None` without
-/// known trials or rivals.
-///
-/// Trials with half of the exemplars left out are harder than the next person is, who meets all of them.
-fn belief(trials: &[Trial]) -> Option<(f64, f64)> {
-    let alone = trials.iter().filter(|t| t.alone && t.classes.len() > 1);
-    let known: Vec<(&Trial, usize)> = alone.filter_map(|t| Some((t, t.truth?))).collect();
-    if known.is_empty() {
-        return None;
-    }
-    let log_posterior = |t: f64| {
-        let of =
-            |(trial, truth): &(&Trial, usize)| loss(&trial.classes, Some(*truth), t * trial.unit);
-        let off = (t / USUAL_TEMPERATURE).ln() / SPREAD;
-        -INDEPENDENT * known.iter().map(of).sum::<f64>() - 0.5 * off * off
-    };
-    let all: Vec<(f64, f64)> = candidates().map(|t| (t.ln(), log_posterior(t))).collect();
-    let most = all.iter().map(|a| a.1).fold(f64::NEG_INFINITY, f64::max);
-    let sum = |of: &dyn Fn(f64) -> f64| -> f64 {
-        all.iter().map(|(log, p)| (p - most).exp() * of(*log)).sum()
-    };
-    let count = sum(&|_| 1.0);
-    let mean = sum(&|log| log) / count;
-    let variance = sum(&|log| (log - mean) * (log - mean)) / count;
-    Some((mean.exp(), variance.sqrt()))
-}
-
-/// The temperature at which the truth is most probable, and what it then costs; `None` without known trials or rivals.
-fn temperature(trials: &[Trial]) -> Option<(f64, f64)> {
-    let known: Vec<(&Trial, usize)> = trials
-        .iter()
-        .filter_map(|t| Some((t, t.truth?)))
-        .filter(|(t, _)| t.classes.len() > 1)
-        .collect();
-    if known.is_empty() {
-        return None;
-    }
-    let all = |t: f64| -> f64 {
-        let of =
-            |(trial, truth): &(&Trial, usize)| loss(&trial.classes, Some(*truth), t * trial.unit);
-        let off = (t / USUAL_TEMPERATURE).ln();
-        known.iter().map(of).sum::<f64>() + TEMPERATURE_PRIOR * off * off
-    };
-    let with_loss = candidates().map(|t| (t, all(t)));
-    with_loss.min_by(|a, b| a.1.total_cmp(&b.1))
-}
-
-/// How far the likeliest of wrong answers leads the second, as a rule, in units of temperature: less than that tells nothing.
-/// It stands for the temperature where every primitive has one exemplar, and nothing known can be left out. `None` where
-/// less than three primitives are.
-fn chance_lead(trials: &[Trial]) -> Option<f64> {
-    let lead = |trial: &Trial| {
-        let mut classes = trial.classes.clone();
-        classes.sort_by(|a, b| b.total_cmp(a));
-        let [first, second] = *classes.first_chunk()?;
-        Some((first - second) / trial.unit).filter(|lead| lead.is_finite())
-    };
-    let unknown = trials.iter().filter(|t| t.truth.is_none());
-    median(&unknown.filter_map(lead).collect::<Vec<f64>>())
-}
-
-/// Less the logarithm of a primitive's probability among all, of the most probable one if none is named.
-fn loss(classes: &[f64], of: Option<usize>, temperature: f64) -> f64 {
-    let most = classes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let sum: f64 = classes
-        .iter()
-        .map(|c| ((c - most) / temperature).exp())
-        .sum();
-    sum.ln() - of.map_or(0.0, |k| (classes[k] - most) / temperature)
 }

@@ -20,6 +20,7 @@ mod shape;
 mod sight;
 mod stream;
 mod tangents;
+mod temperature;
 mod track;
 
 pub use recogniser::{Filter, FilterSettings};
