@@ -6,7 +6,7 @@ use kineme::primitive::Posterior;
 use super::questions::{Question, SETS, Truth};
 
 /// The share of the fitting motions of the tuning half that the limit of the refusal keeps.
-const KEPT: f64 = 0.95;
+const KEPT: f64 = 0.98;
 
 /// What was answered to a motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,7 +55,8 @@ impl Answer {
     }
 }
 
-/// What each set costs a movement, in units of the encoder; `None` where no hand moves.
+/// What each set costs a movement, as a share of what it would cost to predict that nothing moves: how much of the movement
+/// the set leaves unsaid. `None` where no hand moves.
 pub type Costs = Option<[f64; SETS.len()]>;
 
 /// The first least of the values.
@@ -69,7 +70,7 @@ fn least(values: &[f64; SETS.len()]) -> usize {
     best
 }
 
-/// The limit above which a cost is refused: what 95 in 100 motions of the tuning half that resemble a set stay below.
+/// The limit above which a cost is refused: what 98 in 100 motions of the tuning half that resemble a set stay below.
 pub fn limit(asked: &[(Question, Costs)]) -> f64 {
     let own = asked.iter().filter(|(q, _)| q.tuned() && q.truth.is_some());
     let costs: Vec<f64> = own.filter_map(|(_, c)| c.map(|c| c[least(&c)])).collect();

@@ -11,13 +11,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use kineme::Vocabulary;
+use kineme::motion::Motion;
 use kineme::perception::calibrated;
 use kineme::perception::encoding::{Encoder, EncodingMethod, EncodingSettings};
 use kineme::primitive::{Observations, Primitive, Recogniser, Transitions};
+use kineme::skeleton::Skeleton;
 use rayon::prelude::*;
 
 pub use answers::{Answer, Costs, limit, refused, right, wilson};
-pub use movement::{Movement, costs, one_handed, one_handed_paper};
+pub use movement::{Movement, costs, enlarged, knuckled, one_handed, one_handed_paper};
 pub use questions::{Question, RESEMBLING, SETS, Truth};
 pub use strokes::{RISING, Taken, Told, coordinate, strokes, tally};
 
@@ -64,25 +66,27 @@ pub struct EncodingTest {
     pub strokes: Vec<(&'static str, Vec<Told>)>,
 }
 
-/// The primitives of the four sets as one vocabulary, and the set of each.
+/// The primitives of the four sets as one vocabulary of a body, and the set of each.
 ///
 /// # Errors
-/// Never for the embedded scripts.
-pub fn vocabulary() -> Result<(Vocabulary, Vec<usize>)> {
-    let body = Arc::new(kineme::ares()?);
+/// When the scripts cannot be performed by the body.
+pub fn vocabulary(body: &Arc<Skeleton>) -> Result<(Vocabulary, Vec<usize>)> {
     let mut primitives: Vec<Primitive> = Vec::new();
     let mut sets = Vec::new();
     for (k, set) in SETS.iter().enumerate() {
         let script = SCRIPTS.iter().find(|(name, _)| name == set);
         let (name, text) = script.ok_or("no such script")?;
-        for primitive in choreography(name, text, &body)?.primitives() {
+        for primitive in choreography(name, text, body)?.primitives() {
             primitives.push(primitive.clone());
             sets.push(k);
         }
     }
     let transitions = Transitions::none(primitives.len());
-    let all = Vocabulary::new(body, primitives, Vec::new(), transitions)?;
-    Ok((calibrated(all, None)?, sets))
+    let body = Arc::clone(body);
+    Ok((
+        Vocabulary::new(body, primitives, Vec::new(), transitions)?,
+        sets,
+    ))
 }
 
 /// Asks every motion of a corpus that resembles a set or none, one in `every` of each kind.
@@ -95,11 +99,18 @@ pub fn encoding_test(
     watch: &mut dyn FnMut(&str),
 ) -> Result<EncodingTest> {
     watch("learning the four sets of primitives");
-    let (vocabulary, sets) = vocabulary()?;
+    let body = Arc::new(kineme::ares()?);
+    let (vocabulary, sets) = self::vocabulary(&body)?;
+    let vocabulary = calibrated(vocabulary, None)?;
+    let knuckled = Arc::new(knuckled(&body)?);
+    let (of_movements, _) = self::vocabulary(&knuckled)?;
     watch("reading motions that resemble them, or none");
     let motions = asked(corpus, &vocabulary, every)?;
     let part = |a: &Asked| -> Result<(Question, Movement)> {
-        Ok((a.question.clone(), Movement::of(&a.motion)?))
+        let m = &a.motion;
+        let (poses, roots) = (m.poses().to_vec(), m.roots().to_vec());
+        let m = Motion::new(m.name(), Arc::clone(&knuckled), m.rate_hz(), poses, roots)?;
+        Ok((a.question.clone(), Movement::of(&m)?))
     };
     let parts: Vec<_> = motions.par_iter().map(part).collect::<Result<_>>()?;
     let mut methods = Vec::new();
@@ -128,17 +139,17 @@ pub fn encoding_test(
     methods.push(Method {
         name: PAPER,
         part: Part::Movement,
-        answers: by_the_paper(&vocabulary, &sets, &parts)?,
+        answers: by_the_paper(&of_movements, &sets, &parts)?,
     });
     methods.push(Method {
         name: HYPOTHESES,
         part: Part::Movement,
-        answers: by_hypotheses(&vocabulary, &sets, &parts)?,
+        answers: by_hypotheses(&of_movements, &sets, &parts)?,
     });
     watch("encoding strokes");
     Ok(EncodingTest {
         methods,
-        strokes: stroke_by_stroke(&vocabulary, &sets, &parts)?,
+        strokes: stroke_by_stroke(&of_movements, &sets, &parts)?,
     })
 }
 
