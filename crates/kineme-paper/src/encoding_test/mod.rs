@@ -19,7 +19,10 @@ use kineme::skeleton::Skeleton;
 use rayon::prelude::*;
 
 pub use answers::{Answer, Costs, limit, refused, right, wilson};
-pub use movement::{Movement, costs, enlarged, knuckled, one_handed, one_handed_paper};
+pub use movement::{
+    Encoders, Hand, Movement, costs, enlarged, knuckled, one_handed, one_handed_paper,
+    whole_strokes,
+};
 pub use questions::{Question, RESEMBLING, SETS, Truth};
 pub use strokes::{RISING, Taken, Told, coordinate, strokes, tally};
 
@@ -106,13 +109,16 @@ pub fn encoding_test(
     let (of_movements, _) = self::vocabulary(&knuckled)?;
     watch("reading motions that resemble them, or none");
     let motions = asked(corpus, &vocabulary, every)?;
-    let part = |a: &Asked| -> Result<(Question, Movement)> {
+    let of_wrists = |a: &Asked| -> Result<(Question, Movement)> {
+        Ok((a.question.clone(), Movement::of(&a.motion)?))
+    };
+    let of_knuckles = |a: &Asked| -> Result<(Question, Movement)> {
         let m = &a.motion;
         let (poses, roots) = (m.poses().to_vec(), m.roots().to_vec());
         let m = Motion::new(m.name(), Arc::clone(&knuckled), m.rate_hz(), poses, roots)?;
         Ok((a.question.clone(), Movement::of(&m)?))
     };
-    let parts: Vec<_> = motions.par_iter().map(part).collect::<Result<_>>()?;
+    let parts: Vec<_> = motions.par_iter().map(of_knuckles).collect::<Result<_>>()?;
     let mut methods = Vec::new();
     for (name, method) in METHODS {
         watch(&format!("encoding whole recordings: {name}"));
@@ -147,9 +153,10 @@ pub fn encoding_test(
         answers: by_hypotheses(&of_movements, &sets, &parts)?,
     });
     watch("encoding strokes");
+    let parts: Vec<_> = motions.par_iter().map(of_wrists).collect::<Result<_>>()?;
     Ok(EncodingTest {
         methods,
-        strokes: stroke_by_stroke(&of_movements, &sets, &parts)?,
+        strokes: stroke_by_stroke(&vocabulary, &sets, &parts)?,
     })
 }
 
@@ -176,15 +183,15 @@ fn by_the_paper(vocabulary: &Vocabulary, sets: &[usize], parts: &Parts) -> Resul
 }
 
 fn by_hypotheses(vocabulary: &Vocabulary, sets: &[usize], parts: &Parts) -> Result<Vec<Answer>> {
-    let encoder = Encoder::new(vocabulary, &one_handed())?;
-    let ask = |(question, part): &(Question, Movement)| -> Result<(Question, Costs)> {
-        Ok((question.clone(), costs(&encoder, part, sets)?))
+    let encoders = Encoders::new(vocabulary)?;
+    let ask = |(question, part): &(Question, Movement)| -> Result<(Question, Option<Costs>)> {
+        Ok((question.clone(), costs(&encoders, part, sets)?))
     };
     let costs: Vec<_> = parts.par_iter().map(ask).collect::<Result<_>>()?;
     let limit = limit(&costs);
     let answers = costs.iter();
     Ok(answers
-        .map(|(question, costs)| Answer::cheapest(question, *costs, limit))
+        .map(|(question, costs)| Answer::cheapest(question, costs.as_ref(), limit))
         .collect())
 }
 
@@ -215,7 +222,7 @@ fn stroke_by_stroke(
             };
             let (_, own, rising) = &alone[set];
             let mut counts = [[0; 2]; 2];
-            for hand in &part.hands {
+            for hand in part.hands.iter().map(|h| &h.away) {
                 let taken = match literally {
                     true => strokes::by_the_paper(&papers[set], hand, own)?,
                     false => strokes::by_hypotheses(&free, hand, own)?,

@@ -1,5 +1,6 @@
 //! Which part of a recording is the movement, whose it is, and which set of primitives says it at the lowest cost.
 
+use kineme::Vocabulary;
 use kineme::motion::Motion;
 use kineme::perception::encoding::{
     EffectorPaths, Encoder, EncodingMethod, EncodingSettings, Extent,
@@ -20,7 +21,7 @@ const HANDS: [&str; 2] = ["left_hand", HAND];
 /// A hand that gets less far than this from where it begins, in reaches, is compared in this size.
 const SMALLEST: f64 = 0.6;
 /// What there is to say of a movement at least, in units of the encoder, when it is asked how much of it is not said.
-const LEAST: f64 = 0.1;
+const LEAST: f64 = 0.2;
 
 /// A body whose hands are where its fingers begin. Who greets turns the wrist, and the wrist's centre hardly moves.
 ///
@@ -46,14 +47,24 @@ pub fn knuckled(body: &Skeleton) -> Result<Skeleton> {
 pub struct Movement {
     /// How far the hands reach in the whole recording, metres.
     pub reach_m: f64,
-    /// The paths of every hand that moves while it performs, as of the right hand: those of the left are in the mirror.
-    pub hands: Vec<EffectorPaths>,
+    /// Every hand that moves.
+    pub hands: Vec<Hand>,
     /// Both hands while one of them performs; in the mirror if the left one moves more.
     pub both: EffectorPaths,
 }
 
+/// What a hand did, as of the right hand: the left is in the mirror.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hand {
+    /// While it was away from rest.
+    pub away: EffectorPaths,
+    /// While it went to and fro, from its first turning point to its last, if it did.
+    pub to_and_fro: Option<EffectorPaths>,
+}
+
 impl Movement {
-    /// By the hands' own kinematics: [`EffectorPaths::moving`] says which hands, [`EffectorPaths::performed`] when.
+    /// By the hands' own kinematics: [`EffectorPaths::moving`] says which hands, [`EffectorPaths::away`] and
+    /// [`EffectorPaths::to_and_fro`] when.
     ///
     /// # Errors
     /// When the body has no hands or shoulders.
@@ -78,7 +89,12 @@ impl Movement {
         for (hand, seen) in [&mirrored, paths].into_iter().enumerate() {
             if moving[hand] {
                 let span = paths.performed(hand);
-                hands.push(seen.only(&[HAND])?.slice(span.clone())?);
+                let one = seen.only(&[HAND])?;
+                let to_and_fro = paths.to_and_fro(hand).map(|frames| one.slice(frames));
+                hands.push(Hand {
+                    away: one.slice(paths.away(hand))?,
+                    to_and_fro: to_and_fro.transpose()?,
+                });
                 spans.push(span);
             }
         }
@@ -115,6 +131,16 @@ pub fn one_handed() -> EncodingSettings {
     }
 }
 
+/// The same of a hand that goes to and fro, seen between turning points: what it makes are whole strokes, so that a
+/// primitive is begun at its beginning and costs what is left out of its end.
+pub fn whole_strokes() -> EncodingSettings {
+    EncodingSettings {
+        entry_phase: 0.0,
+        end_cost: 1.0,
+        ..one_handed()
+    }
+}
+
 /// The published method on one hand.
 pub fn one_handed_paper() -> EncodingSettings {
     EncodingSettings {
@@ -124,26 +150,62 @@ pub fn one_handed_paper() -> EncodingSettings {
     }
 }
 
-/// What each set costs: the mean over the hands that move, by how long they perform, each enlarged to the size of the
+/// Encoders of the right hand.
+pub struct Encoders<'a> {
+    /// With the settings of [`one_handed`].
+    pub away: Encoder<'a>,
+    /// With those of [`whole_strokes`].
+    pub to_and_fro: Encoder<'a>,
+}
+
+impl<'a> Encoders<'a> {
+    /// Both over a vocabulary.
+    ///
+    /// # Errors
+    /// When its body has no right hand.
+    pub fn new(vocabulary: &'a Vocabulary) -> Result<Self> {
+        Ok(Self {
+            away: Encoder::new(vocabulary, &one_handed())?,
+            to_and_fro: Encoder::new(vocabulary, &whole_strokes())?,
+        })
+    }
+}
+
+/// What a movement costs: the mean over the hands that move, by how long they perform, each enlarged to the size of the
 /// primitives. `None` where no hand moves.
 ///
 /// # Errors
-/// When the encoder looks at something else than the right hand.
-pub fn costs(encoder: &Encoder<'_>, movement: &Movement, sets: &[usize]) -> Result<Costs> {
-    let mut sums = [0.0; SETS.len()];
+/// When a hand's paths are not of the right hand.
+pub fn costs(
+    encoders: &Encoders<'_>,
+    movement: &Movement,
+    sets: &[usize],
+) -> Result<Option<Costs>> {
+    let own = |set| -> Vec<usize> { (0..sets.len()).filter(|p| sets[*p] == set).collect() };
+    let mut whole = [0.0; SETS.len()];
+    let mut free = [0.0; SETS.len()];
     let (mut held, mut all) = (0.0, 0.0);
-    for paths in &movement.hands {
+    for hand in &movement.hands {
+        let paths = hand.to_and_fro.as_ref().unwrap_or(&hand.away);
         let secs = paths.duration_secs();
         let paths = enlarged(paths, SMALLEST * movement.reach_m)?;
-        for (set, sum) in sums.iter_mut().enumerate() {
-            let own: Vec<usize> = (0..sets.len()).filter(|p| sets[*p] == set).collect();
-            let told = encoder.explained(&paths, &own)?;
-            *sum += secs * told.cost;
-            held += secs * told.held / SETS.len() as f64;
+        for set in 0..SETS.len() {
+            let anywhere = encoders.away.explained(&paths, &own(set))?;
+            free[set] += secs * anywhere.cost;
+            held += secs * anywhere.held / SETS.len() as f64;
+            whole[set] += secs
+                * match hand.to_and_fro {
+                    Some(_) => encoders.to_and_fro.explained(&paths, &own(set))?.cost,
+                    None => anywhere.cost,
+                };
         }
         all += secs;
     }
-    Ok((all > 0.0).then(|| sums.map(|s| s / (held + LEAST * all))))
+    let least = free.into_iter().fold(f64::INFINITY, f64::min);
+    Ok((all > 0.0).then(|| Costs {
+        sets: whole.map(|s| s / all),
+        unsaid: least / (held + LEAST * all),
+    }))
 }
 
 /// The paths of a hand, enlarged about the mean of its places until it gets so far, metres, from where it begins.

@@ -105,14 +105,19 @@ impl EffectorPaths {
         lengths.iter().map(moves).collect()
     }
 
-    /// The frames, two at least where there are, in which an effector (an index) performs: from the first to the last
-    /// of its turning points ([`Self::turning_points`]) in [`Self::away`], or all of that with fewer than two.
+    /// The frames in which an effector (an index) performs: in which it goes to and fro ([`Self::to_and_fro`]), or else all
+    /// in which it is away from rest ([`Self::away`]).
     pub fn performed(&self, effector: usize) -> Range<usize> {
-        let away = self.away(effector);
-        match self.turning_points(effector, away.clone()).as_slice() {
-            [first, .., last] if first + 1 < *last => *first..last + 1,
-            _ => away,
-        }
+        let to_and_fro = self.to_and_fro(effector);
+        to_and_fro.unwrap_or_else(|| self.away(effector))
+    }
+
+    /// The frames, two at least, from the first to the last turning point of an effector (an index) while it is away from
+    /// rest; `None` with fewer than two.
+    pub fn to_and_fro(&self, effector: usize) -> Option<Range<usize>> {
+        let points = self.turning_points(effector, self.away(effector));
+        let (first, last) = (*points.first()?, *points.last()?);
+        (first < last).then_some(first..last + 1)
     }
 
     /// The frames of a range at which an effector turns back, in order: it comes from one side and leaves to the same
