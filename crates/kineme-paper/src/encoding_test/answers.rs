@@ -60,8 +60,7 @@ impl Answer {
 pub struct Costs {
     /// In each set, units of the encoder.
     pub sets: [f64; SETS.len()],
-    /// How much the best set leaves unsaid if its primitives may begin and end anywhere: what it costs, as a share of what
-    /// it costs to predict that nothing moves.
+    /// How much the best set leaves unsaid: what it costs, as a share of what it costs to predict that nothing moves.
     pub unsaid: f64,
 }
 

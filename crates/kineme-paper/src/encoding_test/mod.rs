@@ -19,10 +19,7 @@ use kineme::skeleton::Skeleton;
 use rayon::prelude::*;
 
 pub use answers::{Answer, Costs, limit, refused, right, wilson};
-pub use movement::{
-    Encoders, Hand, Movement, costs, enlarged, knuckled, one_handed, one_handed_paper,
-    whole_strokes,
-};
+pub use movement::{Hand, Movement, costs, enlarged, knuckled, one_handed, one_handed_paper};
 pub use questions::{Question, RESEMBLING, SETS, Truth};
 pub use strokes::{RISING, Taken, Told, coordinate, strokes, tally};
 
@@ -183,9 +180,9 @@ fn by_the_paper(vocabulary: &Vocabulary, sets: &[usize], parts: &Parts) -> Resul
 }
 
 fn by_hypotheses(vocabulary: &Vocabulary, sets: &[usize], parts: &Parts) -> Result<Vec<Answer>> {
-    let encoders = Encoders::new(vocabulary)?;
+    let encoder = Encoder::new(vocabulary, &one_handed())?;
     let ask = |(question, part): &(Question, Movement)| -> Result<(Question, Option<Costs>)> {
-        Ok((question.clone(), costs(&encoders, part, sets)?))
+        Ok((question.clone(), costs(&encoder, part, sets)?))
     };
     let costs: Vec<_> = parts.par_iter().map(ask).collect::<Result<_>>()?;
     let limit = limit(&costs);

@@ -1,6 +1,5 @@
 //! Which part of a recording is the movement, whose it is, and which set of primitives says it at the lowest cost.
 
-use kineme::Vocabulary;
 use kineme::motion::Motion;
 use kineme::perception::encoding::{
     EffectorPaths, Encoder, EncodingMethod, EncodingSettings, Extent,
@@ -60,6 +59,13 @@ pub struct Hand {
     pub away: EffectorPaths,
     /// While it went to and fro, from its first turning point to its last, if it did.
     pub to_and_fro: Option<EffectorPaths>,
+}
+
+impl Hand {
+    /// While it performed: to and fro, or else all the while it was away.
+    pub fn performed(&self) -> &EffectorPaths {
+        self.to_and_fro.as_ref().unwrap_or(&self.away)
+    }
 }
 
 impl Movement {
@@ -131,16 +137,6 @@ pub fn one_handed() -> EncodingSettings {
     }
 }
 
-/// The same of a hand that goes to and fro, seen between turning points: what it makes are whole strokes, so that a
-/// primitive is begun at its beginning and costs what is left out of its end.
-pub fn whole_strokes() -> EncodingSettings {
-    EncodingSettings {
-        entry_phase: 0.0,
-        end_cost: 1.0,
-        ..one_handed()
-    }
-}
-
 /// The published method on one hand.
 pub fn one_handed_paper() -> EncodingSettings {
     EncodingSettings {
@@ -150,60 +146,29 @@ pub fn one_handed_paper() -> EncodingSettings {
     }
 }
 
-/// Encoders of the right hand.
-pub struct Encoders<'a> {
-    /// With the settings of [`one_handed`].
-    pub away: Encoder<'a>,
-    /// With those of [`whole_strokes`].
-    pub to_and_fro: Encoder<'a>,
-}
-
-impl<'a> Encoders<'a> {
-    /// Both over a vocabulary.
-    ///
-    /// # Errors
-    /// When its body has no right hand.
-    pub fn new(vocabulary: &'a Vocabulary) -> Result<Self> {
-        Ok(Self {
-            away: Encoder::new(vocabulary, &one_handed())?,
-            to_and_fro: Encoder::new(vocabulary, &whole_strokes())?,
-        })
-    }
-}
-
 /// What a movement costs: the mean over the hands that move, by how long they perform, each enlarged to the size of the
 /// primitives. `None` where no hand moves.
 ///
 /// # Errors
-/// When a hand's paths are not of the right hand.
-pub fn costs(
-    encoders: &Encoders<'_>,
-    movement: &Movement,
-    sets: &[usize],
-) -> Result<Option<Costs>> {
-    let own = |set| -> Vec<usize> { (0..sets.len()).filter(|p| sets[*p] == set).collect() };
-    let mut whole = [0.0; SETS.len()];
-    let mut free = [0.0; SETS.len()];
+/// When the encoder looks at something else than the right hand.
+pub fn costs(encoder: &Encoder<'_>, movement: &Movement, sets: &[usize]) -> Result<Option<Costs>> {
+    let mut sums = [0.0; SETS.len()];
     let (mut held, mut all) = (0.0, 0.0);
     for hand in &movement.hands {
-        let paths = hand.to_and_fro.as_ref().unwrap_or(&hand.away);
+        let paths = hand.performed();
         let secs = paths.duration_secs();
         let paths = enlarged(paths, SMALLEST * movement.reach_m)?;
-        for set in 0..SETS.len() {
-            let anywhere = encoders.away.explained(&paths, &own(set))?;
-            free[set] += secs * anywhere.cost;
-            held += secs * anywhere.held / SETS.len() as f64;
-            whole[set] += secs
-                * match hand.to_and_fro {
-                    Some(_) => encoders.to_and_fro.explained(&paths, &own(set))?.cost,
-                    None => anywhere.cost,
-                };
+        for (set, sum) in sums.iter_mut().enumerate() {
+            let own: Vec<usize> = (0..sets.len()).filter(|p| sets[*p] == set).collect();
+            let told = encoder.explained(&paths, &own)?;
+            *sum += secs * told.cost;
+            held += secs * told.held / SETS.len() as f64;
         }
         all += secs;
     }
-    let least = free.into_iter().fold(f64::INFINITY, f64::min);
+    let least = sums.into_iter().fold(f64::INFINITY, f64::min);
     Ok((all > 0.0).then(|| Costs {
-        sets: whole.map(|s| s / all),
+        sets: sums.map(|s| s / all),
         unsaid: least / (held + LEAST * all),
     }))
 }

@@ -122,30 +122,29 @@ impl EffectorPaths {
 
     /// The frames of a range at which an effector turns back, in order: it comes from one side and leaves to the same
     /// one, by more than 107 degrees, both ways looked at to where they are 0.08 of the reach away. Of frames on end that
-    /// do, as while a hand is held, the one that turns back most sharply. The same in space whatever the direction, and
-    /// in time forward and backward.
+    /// do, as around the end of a stroke or while a hand is held, the middle one. The same in space whatever the direction,
+    /// and in time forward and backward but for a frame.
     pub fn turning_points(&self, effector: usize, within: Range<usize>) -> Vec<usize> {
         let path = self.smoothed(effector);
         let far = TURN * self.reach_m().unwrap_or(1.0);
         let gap = |a: usize, b: usize| path[b] - path[a];
         let mut points = Vec::new();
-        let mut sharpest: Option<(f64, usize)> = None;
-        for here in within.start..within.end.min(path.len()) {
+        let mut first: Option<usize> = None;
+        let end = within.end.min(path.len());
+        for here in within.start..end {
             let before = (0..here).rev().find(|&e| gap(e, here).norm() >= far);
             let after = (here + 1..path.len()).find(|&g| gap(here, g).norm() >= far);
-            let turn = before.zip(after).map(|(before, after)| {
+            let back = before.zip(after).is_some_and(|(before, after)| {
                 let (come, gone) = (gap(before, here), gap(here, after));
-                come.dot(&gone) / (come.norm() * gone.norm())
+                come.dot(&gone) < BACK * come.norm() * gone.norm()
             });
-            match turn.filter(|t| *t < BACK) {
-                Some(turn) if sharpest.is_none_or(|(t, _)| turn < t) => {
-                    sharpest = Some((turn, here));
-                }
-                Some(_) => {}
-                None => points.extend(sharpest.take().map(|(_, frame)| frame)),
+            if back {
+                first = first.or(Some(here));
+            } else {
+                points.extend(first.take().map(|first| (first + here - 1) / 2));
             }
         }
-        points.extend(sharpest.map(|(_, frame)| frame));
+        points.extend(first.map(|first| (first + end - 1) / 2));
         points
     }
 
