@@ -1,7 +1,9 @@
 //! The encoding test's own rules: whose movement, which set, which strokes.
 
 use kineme::perception::encoding::EffectorPaths;
-use kineme_paper::encoding_test::{Answer, Movement, Question, limit, strokes, tally};
+use kineme_paper::encoding_test::{
+    Answer, Costs, Movement, Question, enlarged, knuckled, limit, strokes, tally,
+};
 use nalgebra::Vector3;
 
 const RATE_HZ: f64 = 50.0;
@@ -52,11 +54,17 @@ fn the_hands_that_move_are_judged_and_the_left_one_in_the_mirror() {
     let mirrored = waving(0.2, 0.0).mirrored().expect("the mirror");
     let left = Movement::of_paths(&mirrored).expect("a movement");
     assert_eq!(left, right, "left-handed or right-handed is the same");
-    let secs = right.hands[0].duration_secs();
+    let secs = right.hands[0].away.duration_secs();
     assert!(
         (3.0..4.4).contains(&secs),
         "without way there and back: {secs}"
     );
+    // Three waves and a half: from a quarter of the first one to a quarter before the end of the last.
+    let secs = right.hands[0].performed().duration_secs();
+    assert!((2.9..3.1).contains(&secs), "from turn to turn: {secs}");
+    let raised = Movement::of_paths(&waving(0.0, 0.0)).expect("a movement");
+    assert_eq!(raised.hands[0].to_and_fro, None);
+    assert_eq!(raised.hands[0].performed(), &raised.hands[0].away);
 }
 
 #[test]
@@ -97,18 +105,58 @@ fn decisions_count_inside_a_stroke_while_the_hand_goes_on() {
 
 #[test]
 fn the_cheapest_set_is_answered_up_to_a_limit_of_the_tuning_half() {
-    let costs = [0.4, 0.2, 0.2, 0.9];
-    let answer = Answer::cheapest(&question(1, Some(1)), Some(costs), 0.3);
+    let costs = |sets, unsaid| Costs { sets, unsaid };
+    let told = costs([0.4, 0.2, 0.2, 0.9], 0.2);
+    let answer = Answer::cheapest(&question(1, Some(1)), Some(&told), 0.3);
     assert_eq!((answer.set(), answer.is_right()), (Some(1), true));
-    let answer = Answer::cheapest(&question(1, Some(1)), Some(costs), 0.1);
+    let answer = Answer::cheapest(&question(1, Some(1)), Some(&told), 0.1);
     assert_eq!((answer.set(), answer.leading), (None, 1));
     assert!(Answer::cheapest(&question(0, None), None, 9.0).is_right());
     // Only motions of the tuning half that resemble a set have a say.
-    let asked = |number, truth, cost| (question(number, truth), Some([cost, 5.0, 5.0, 5.0]));
+    let asked = |number, truth, unsaid| (question(number, truth), Some(costs([0.1; 4], unsaid)));
     let half = [
         asked(0, Some(0), 0.3),
         asked(1, Some(0), 4.0),
         asked(2, None, 4.0),
     ];
     assert!((limit(&half) - 0.3).abs() < 1e-12);
+}
+
+#[test]
+fn small_movements_are_enlarged_about_their_middle_and_large_ones_left_alone() {
+    let hand = waving(0.2, 0.0).only(&["right_hand"]).expect("a hand");
+    let waves = hand.slice(30..190).expect("a part");
+    let middle = |paths: &EffectorPaths| {
+        let places = || (0..paths.frames()).filter_map(|f| paths.at(f)[0]);
+        let mean = places().sum::<Vector3<f64>>() / places().count() as f64;
+        let first = places().next().expect("a place");
+        let far = places().map(|p| (p - first).norm()).fold(0.0, f64::max);
+        (mean, far)
+    };
+    let (mean, far) = middle(&waves);
+    let large = enlarged(&waves, 2.0 * far).expect("enlarged");
+    assert!((middle(&large).0 - mean).norm() < 1e-9);
+    assert!((middle(&large).1 - 2.0 * far).abs() < 1e-9);
+    assert_eq!(enlarged(&waves, 0.5 * far).expect("as it was"), waves);
+    let still = waves.slice(0..1).expect("a frame");
+    assert_eq!(enlarged(&still, 1.0).expect("as it was"), still);
+}
+
+#[test]
+fn turning_the_wrist_moves_a_hand_where_its_fingers_begin() {
+    let body = kineme::ares().expect("a body");
+    let knuckled = knuckled(&body).expect("a body");
+    let hand = body.effector("right_hand").expect("a hand");
+    let joint = body.effectors()[hand].joint;
+    let mut turned = body.neutral();
+    turned[body.coordinates(joint).start] += 0.5;
+    let moved = |body: &kineme::skeleton::Skeleton, e: usize| {
+        let root = kineme::skeleton::Root::ORIGIN;
+        let [a, b] = [body.neutral(), turned.clone()].map(|p| body.effector_positions(&p, &root));
+        (a[e] - b[e]).norm()
+    };
+    assert!(moved(&body, hand) < 1e-9, "the wrist's centre");
+    assert!(moved(&knuckled, hand) > 0.02, "the base of the fingers");
+    let foot = body.effector("right_foot").expect("a foot");
+    assert_eq!(body.effectors()[foot], knuckled.effectors()[foot]);
 }

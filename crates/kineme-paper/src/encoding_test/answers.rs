@@ -6,7 +6,7 @@ use kineme::primitive::Posterior;
 use super::questions::{Question, SETS, Truth};
 
 /// The share of the fitting motions of the tuning half that the limit of the refusal keeps.
-const KEPT: f64 = 0.95;
+const KEPT: f64 = 0.98;
 
 /// What was answered to a motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,13 +34,13 @@ impl Answer {
         }
     }
 
-    /// The set that costs least, refused above a limit. Without costs no hand moves, and it is refused.
-    pub fn cheapest(question: &Question, costs: Costs, limit: f64) -> Self {
-        let leading = costs.map_or(0, |c| least(&c));
+    /// The set that costs least, refused above a limit of what is left unsaid. Without costs no hand moves, and it is
+    /// refused.
+    pub fn cheapest(question: &Question, costs: Option<&Costs>, limit: f64) -> Self {
         Self {
             question: question.clone(),
-            leading,
-            refused: costs.is_none_or(|c| c[leading] > limit),
+            leading: costs.map_or(0, |c| least(&c.sets)),
+            refused: costs.is_none_or(|c| c.unsaid > limit),
         }
     }
 
@@ -55,8 +55,14 @@ impl Answer {
     }
 }
 
-/// What each set costs a movement, in units of the encoder; `None` where no hand moves.
-pub type Costs = Option<[f64; SETS.len()]>;
+/// What it costs to say a movement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Costs {
+    /// In each set, units of the encoder.
+    pub sets: [f64; SETS.len()],
+    /// How much the best set leaves unsaid: what it costs, as a share of what it costs to predict that nothing moves.
+    pub unsaid: f64,
+}
 
 /// The first least of the values.
 fn least(values: &[f64; SETS.len()]) -> usize {
@@ -69,11 +75,12 @@ fn least(values: &[f64; SETS.len()]) -> usize {
     best
 }
 
-/// The limit above which a cost is refused: what 95 in 100 motions of the tuning half that resemble a set stay below.
-pub fn limit(asked: &[(Question, Costs)]) -> f64 {
+/// The limit above which what is left unsaid is refused: what 98 in 100 motions of the tuning half that resemble a set
+/// stay below.
+pub fn limit(asked: &[(Question, Option<Costs>)]) -> f64 {
     let own = asked.iter().filter(|(q, _)| q.tuned() && q.truth.is_some());
-    let costs: Vec<f64> = own.filter_map(|(_, c)| c.map(|c| c[least(&c)])).collect();
-    quantile(&costs, KEPT).unwrap_or(f64::INFINITY)
+    let unsaid: Vec<f64> = own.filter_map(|(_, c)| Some((*c)?.unsaid)).collect();
+    quantile(&unsaid, KEPT).unwrap_or(f64::INFINITY)
 }
 
 /// The interval of 95 in 100 for a share of which `part` of `whole` was drawn (Wilson 1927).

@@ -11,13 +11,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use kineme::Vocabulary;
+use kineme::motion::Motion;
 use kineme::perception::calibrated;
 use kineme::perception::encoding::{Encoder, EncodingMethod, EncodingSettings};
 use kineme::primitive::{Observations, Primitive, Recogniser, Transitions};
+use kineme::skeleton::Skeleton;
 use rayon::prelude::*;
 
 pub use answers::{Answer, Costs, limit, refused, right, wilson};
-pub use movement::{Movement, costs, one_handed, one_handed_paper};
+pub use movement::{Hand, Movement, costs, enlarged, knuckled, one_handed, one_handed_paper};
 pub use questions::{Question, RESEMBLING, SETS, Truth};
 pub use strokes::{RISING, Taken, Told, coordinate, strokes, tally};
 
@@ -64,25 +66,27 @@ pub struct EncodingTest {
     pub strokes: Vec<(&'static str, Vec<Told>)>,
 }
 
-/// The primitives of the four sets as one vocabulary, and the set of each.
+/// The primitives of the four sets as one vocabulary of a body, and the set of each.
 ///
 /// # Errors
-/// Never for the embedded scripts.
-pub fn vocabulary() -> Result<(Vocabulary, Vec<usize>)> {
-    let body = Arc::new(kineme::ares()?);
+/// When the scripts cannot be performed by the body.
+pub fn vocabulary(body: &Arc<Skeleton>) -> Result<(Vocabulary, Vec<usize>)> {
     let mut primitives: Vec<Primitive> = Vec::new();
     let mut sets = Vec::new();
     for (k, set) in SETS.iter().enumerate() {
         let script = SCRIPTS.iter().find(|(name, _)| name == set);
         let (name, text) = script.ok_or("no such script")?;
-        for primitive in choreography(name, text, &body)?.primitives() {
+        for primitive in choreography(name, text, body)?.primitives() {
             primitives.push(primitive.clone());
             sets.push(k);
         }
     }
     let transitions = Transitions::none(primitives.len());
-    let all = Vocabulary::new(body, primitives, Vec::new(), transitions)?;
-    Ok((calibrated(all, None)?, sets))
+    let body = Arc::clone(body);
+    Ok((
+        Vocabulary::new(body, primitives, Vec::new(), transitions)?,
+        sets,
+    ))
 }
 
 /// Asks every motion of a corpus that resembles a set or none, one in `every` of each kind.
@@ -95,13 +99,23 @@ pub fn encoding_test(
     watch: &mut dyn FnMut(&str),
 ) -> Result<EncodingTest> {
     watch("learning the four sets of primitives");
-    let (vocabulary, sets) = vocabulary()?;
+    let body = Arc::new(kineme::ares()?);
+    let (vocabulary, sets) = self::vocabulary(&body)?;
+    let vocabulary = calibrated(vocabulary, None)?;
+    let knuckled = Arc::new(knuckled(&body)?);
+    let (of_movements, _) = self::vocabulary(&knuckled)?;
     watch("reading motions that resemble them, or none");
     let motions = asked(corpus, &vocabulary, every)?;
-    let part = |a: &Asked| -> Result<(Question, Movement)> {
+    let of_wrists = |a: &Asked| -> Result<(Question, Movement)> {
         Ok((a.question.clone(), Movement::of(&a.motion)?))
     };
-    let parts: Vec<_> = motions.par_iter().map(part).collect::<Result<_>>()?;
+    let of_knuckles = |a: &Asked| -> Result<(Question, Movement)> {
+        let m = &a.motion;
+        let (poses, roots) = (m.poses().to_vec(), m.roots().to_vec());
+        let m = Motion::new(m.name(), Arc::clone(&knuckled), m.rate_hz(), poses, roots)?;
+        Ok((a.question.clone(), Movement::of(&m)?))
+    };
+    let parts: Vec<_> = motions.par_iter().map(of_knuckles).collect::<Result<_>>()?;
     let mut methods = Vec::new();
     for (name, method) in METHODS {
         watch(&format!("encoding whole recordings: {name}"));
@@ -128,14 +142,15 @@ pub fn encoding_test(
     methods.push(Method {
         name: PAPER,
         part: Part::Movement,
-        answers: by_the_paper(&vocabulary, &sets, &parts)?,
+        answers: by_the_paper(&of_movements, &sets, &parts)?,
     });
     methods.push(Method {
         name: HYPOTHESES,
         part: Part::Movement,
-        answers: by_hypotheses(&vocabulary, &sets, &parts)?,
+        answers: by_hypotheses(&of_movements, &sets, &parts)?,
     });
     watch("encoding strokes");
+    let parts: Vec<_> = motions.par_iter().map(of_wrists).collect::<Result<_>>()?;
     Ok(EncodingTest {
         methods,
         strokes: stroke_by_stroke(&vocabulary, &sets, &parts)?,
@@ -166,14 +181,14 @@ fn by_the_paper(vocabulary: &Vocabulary, sets: &[usize], parts: &Parts) -> Resul
 
 fn by_hypotheses(vocabulary: &Vocabulary, sets: &[usize], parts: &Parts) -> Result<Vec<Answer>> {
     let encoder = Encoder::new(vocabulary, &one_handed())?;
-    let ask = |(question, part): &(Question, Movement)| -> Result<(Question, Costs)> {
+    let ask = |(question, part): &(Question, Movement)| -> Result<(Question, Option<Costs>)> {
         Ok((question.clone(), costs(&encoder, part, sets)?))
     };
     let costs: Vec<_> = parts.par_iter().map(ask).collect::<Result<_>>()?;
     let limit = limit(&costs);
     let answers = costs.iter();
     Ok(answers
-        .map(|(question, costs)| Answer::cheapest(question, *costs, limit))
+        .map(|(question, costs)| Answer::cheapest(question, costs.as_ref(), limit))
         .collect())
 }
 
@@ -204,7 +219,7 @@ fn stroke_by_stroke(
             };
             let (_, own, rising) = &alone[set];
             let mut counts = [[0; 2]; 2];
-            for hand in &part.hands {
+            for hand in part.hands.iter().map(|h| &h.away) {
                 let taken = match literally {
                     true => strokes::by_the_paper(&papers[set], hand, own)?,
                     false => strokes::by_hypotheses(&free, hand, own)?,

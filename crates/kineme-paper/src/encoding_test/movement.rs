@@ -5,8 +5,11 @@ use kineme::perception::encoding::{
     EffectorPaths, Encoder, EncodingMethod, EncodingSettings, Extent,
 };
 use kineme::primitive::Posterior;
+use kineme::skeleton::Skeleton;
+use nalgebra::Vector3;
 
 use super::SETS;
+use super::answers::Costs;
 use crate::sets::Result;
 
 /// The hand of the primitives.
@@ -14,17 +17,60 @@ const HAND: &str = "right_hand";
 /// Both, in the order of the encoder's defaults.
 const HANDS: [&str; 2] = ["left_hand", HAND];
 
+/// A hand that gets less far than this from where it begins, in reaches, is compared in this size.
+const SMALLEST: f64 = 0.6;
+/// What there is to say of a movement at least, in units of the encoder, when it is asked how much of it is not said.
+const LEAST: f64 = 0.2;
+
+/// A body whose hands are where its fingers begin. Who greets turns the wrist, and the wrist's centre hardly moves.
+///
+/// # Errors
+/// Never for a body that has been made.
+pub fn knuckled(body: &Skeleton) -> Result<Skeleton> {
+    let mut effectors = body.effectors().to_vec();
+    for e in effectors
+        .iter_mut()
+        .filter(|e| HANDS.contains(&e.name.as_str()))
+    {
+        e.point = body.joints()[e.joint].tip;
+    }
+    Ok(Skeleton::new(
+        body.name(),
+        body.joints().to_vec(),
+        effectors,
+    )?)
+}
+
 /// A recording, and what of it is the movement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Movement {
-    /// The paths of every hand that moves while it performs, as of the right hand: those of the left are in the mirror.
-    pub hands: Vec<EffectorPaths>,
+    /// How far the hands reach in the whole recording, metres.
+    pub reach_m: f64,
+    /// Every hand that moves.
+    pub hands: Vec<Hand>,
     /// Both hands while one of them performs; in the mirror if the left one moves more.
     pub both: EffectorPaths,
 }
 
+/// What a hand did, as of the right hand: the left is in the mirror.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hand {
+    /// While it was away from rest.
+    pub away: EffectorPaths,
+    /// While it went to and fro, from its first turning point to its last, if it did.
+    pub to_and_fro: Option<EffectorPaths>,
+}
+
+impl Hand {
+    /// While it performed: to and fro, or else all the while it was away.
+    pub fn performed(&self) -> &EffectorPaths {
+        self.to_and_fro.as_ref().unwrap_or(&self.away)
+    }
+}
+
 impl Movement {
-    /// By the hands' own kinematics: [`EffectorPaths::moving`] says which hands, [`EffectorPaths::performed`] when.
+    /// By the hands' own kinematics: [`EffectorPaths::moving`] says which hands, [`EffectorPaths::away`] and
+    /// [`EffectorPaths::to_and_fro`] when.
     ///
     /// # Errors
     /// When the body has no hands or shoulders.
@@ -49,7 +95,12 @@ impl Movement {
         for (hand, seen) in [&mirrored, paths].into_iter().enumerate() {
             if moving[hand] {
                 let span = paths.performed(hand);
-                hands.push(seen.only(&[HAND])?.slice(span.clone())?);
+                let one = seen.only(&[HAND])?;
+                let to_and_fro = paths.to_and_fro(hand).map(|frames| one.slice(frames));
+                hands.push(Hand {
+                    away: one.slice(paths.away(hand))?,
+                    to_and_fro: to_and_fro.transpose()?,
+                });
                 spans.push(span);
             }
         }
@@ -57,6 +108,7 @@ impl Movement {
         let end = spans.iter().map(|s| s.end).max().unwrap_or(paths.frames());
         let both = if left { &mirrored } else { paths };
         Ok(Self {
+            reach_m: paths.reach_m().unwrap_or(1.0),
             hands,
             both: both.slice(start..end)?,
         })
@@ -94,26 +146,54 @@ pub fn one_handed_paper() -> EncodingSettings {
     }
 }
 
-/// What each set costs: the mean over the hands that move, by how long they perform. `None` where no hand moves.
+/// What a movement costs: the mean over the hands that move, by how long they perform, each enlarged to the size of the
+/// primitives. `None` where no hand moves.
 ///
 /// # Errors
 /// When the encoder looks at something else than the right hand.
-pub fn costs(
-    encoder: &Encoder<'_>,
-    movement: &Movement,
-    sets: &[usize],
-) -> Result<Option<[f64; SETS.len()]>> {
+pub fn costs(encoder: &Encoder<'_>, movement: &Movement, sets: &[usize]) -> Result<Option<Costs>> {
     let mut sums = [0.0; SETS.len()];
-    let mut all = 0.0;
-    for paths in &movement.hands {
+    let (mut held, mut all) = (0.0, 0.0);
+    for hand in &movement.hands {
+        let paths = hand.performed();
         let secs = paths.duration_secs();
+        let paths = enlarged(paths, SMALLEST * movement.reach_m)?;
         for (set, sum) in sums.iter_mut().enumerate() {
             let own: Vec<usize> = (0..sets.len()).filter(|p| sets[*p] == set).collect();
-            *sum += secs * encoder.explained(paths, &own)?.cost;
+            let told = encoder.explained(&paths, &own)?;
+            *sum += secs * told.cost;
+            held += secs * told.held / SETS.len() as f64;
         }
         all += secs;
     }
-    Ok((all > 0.0).then(|| sums.map(|s| s / all)))
+    let least = sums.into_iter().fold(f64::INFINITY, f64::min);
+    Ok((all > 0.0).then(|| Costs {
+        sets: sums.map(|s| s / all),
+        unsaid: least / (held + LEAST * all),
+    }))
+}
+
+/// The paths of a hand, enlarged about the mean of its places until it gets so far, metres, from where it begins.
+///
+/// # Errors
+/// Never for finite places.
+pub fn enlarged(hand: &EffectorPaths, far_m: f64) -> Result<EffectorPaths> {
+    let places = || (0..hand.frames()).flat_map(|f| hand.at(f)).flatten();
+    let Some(first) = places().next() else {
+        return Ok(hand.clone());
+    };
+    let far = places().map(|p| (p - first).norm()).fold(0.0, f64::max);
+    if far <= 0.0 || far >= far_m {
+        return Ok(hand.clone());
+    }
+    let mean = places().sum::<Vector3<f64>>() / places().count() as f64;
+    let grown = |p: &Option<Vector3<f64>>| p.map(|p| mean + far_m / far * (p - mean));
+    let points = (0..hand.frames()).flat_map(|f| hand.at(f).iter().map(grown));
+    Ok(EffectorPaths::new(
+        hand.rate_hz(),
+        hand.effectors().to_vec(),
+        points.collect(),
+    )?)
 }
 
 /// What the published method says of a movement.

@@ -11,12 +11,14 @@ use crate::sets::Result;
 const INTRODUCTION: &str = "\n## Trajectory encoding\n\n\
 Motions to their set: *answered*, refusals counting as wrong; *likeliest*, refused or not. Shares in hundred with the \
 Wilson interval. *Other half*: every second recording of each kind, on which nothing was chosen; a refusal's limit is \
-what 95 in 100 of the first half stay below.\n\n\
-*The movement* is found by the hands' own kinematics, by one rule for all kinds. A hand moves if its path is at least \
-half as long as the other's. A hand that hangs at the beginning or the end (0.45 of the reach below the shoulders or \
-lower) has a place of rest there; its movement lasts from the first to the last moment at which it is farther from there \
-than 0.7 of its greatest such distance. By hypotheses, every hand that moves is judged by itself, the left one in the \
-mirror; by the paper's method both together, in the mirror if the left moves more.\n\n";
+what 98 in 100 of the first half stay below.\n\n\
+*The movement* is found by the hands' own kinematics, by one rule for all kinds; a hand is where its fingers begin. It \
+moves if its path is at least half as long as the other's. If it hangs at the beginning or the end (0.45 of the reach below \
+the shoulders or lower), that is a place of rest, and its movement lasts from the first to the last moment at which it is \
+farther from there than 0.7 of its greatest such distance. If it turns back twice or more meanwhile (by more than 107 \
+degrees, 0.08 of the reach each way), it lasts from the first to the last of these turning points. By hypotheses, every \
+hand that moves is judged by itself, the left one in the mirror; by the paper's method both together, in the mirror if the \
+left moves more.\n\n";
 
 impl EncodingTest {
     /// The counts with their intervals, the confusions, every kind of motion, and the strokes, as Markdown.
@@ -101,8 +103,8 @@ impl EncodingTest {
     fn strokes(&self, out: &mut String) -> Result<()> {
         writeln!(
             out,
-            "\n### Stroke by stroke inside its own set\n\nThe movement of each hand, applied to the two primitives that it \
-             resembles. The truth is the hand's own direction: its height; its horizontal distance from between the \
+            "\n### Stroke by stroke inside its own set\n\nEach hand's wrist while it is away from rest, applied to the two \
+             primitives that it resembles. The truth is the hand's own direction: its height; its horizontal distance from between the \
              shoulders; its bearing around them; how far left it is. A stroke goes from turning point to turning point \
              (0.15 of the reach back, or radians); counted are decisions wholly inside one, at 0.2 reaches a second along \
              it or more. Shares in hundred; intervals by resampling recordings.\n\n\

@@ -1,7 +1,7 @@
 //! Which part of paths is a movement, and what sets of primitives cost it.
 
 use kineme::perception::encoding::{EffectorPaths, Encoder, EncodingSettings};
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::vocabulary::{made, paths, vocabulary};
 
@@ -52,6 +52,80 @@ fn the_way_there_and_back_is_no_part_of_a_movement() {
     }
     let nothing = EffectorPaths::new(50.0, vec!["right_hand".into()], vec![None; 9]);
     assert_eq!(nothing.expect("paths").performed(0), 0..9);
+}
+
+/// Raised within half a second, from side to side `waves` times, and lowered again; metres.
+fn raised(waves: f64, amplitude: f64) -> EffectorPaths {
+    hand(4.0, |t| {
+        let up = (t / 0.5).min((4.0 - t) / 0.5).clamp(0.0, 1.0);
+        let share = ((t - 1.0) / 2.0).clamp(0.0, 1.0);
+        let side = amplitude * (std::f64::consts::TAU * waves * share).sin();
+        (-0.7 + 0.9 * up, side - 0.3)
+    })
+}
+
+#[test]
+fn who_goes_to_and_fro_is_between_the_first_and_the_last_turning_point() {
+    // A wave turns twice.
+    for (waves, amplitude, turns) in [(2.0, 0.2, 4), (3.0, 0.1, 6)] {
+        let paths = raised(waves, amplitude);
+        let points = paths.turning_points(0, paths.away(0));
+        assert_eq!(points.len(), turns, "{points:?}");
+        let span = paths.to_and_fro(0).expect("to and fro");
+        assert_eq!((span.start, span.end - 1), (points[0], points[turns - 1]));
+        assert_eq!(paths.performed(0), span);
+        // A quarter of the first wave, and of the last one.
+        let quarter = 0.5 / waves;
+        let secs = [span.start, span.end].map(|f| f as f64 / 50.0);
+        assert!((secs[0] - 1.0 - quarter).abs() < 0.06, "{secs:?}");
+        assert!((secs[1] - 3.0 + quarter).abs() < 0.06, "{secs:?}");
+    }
+    // A hand that is held, and one that trembles, turns back once: to go down again.
+    for paths in [raised(0.0, 0.0), raised(3.0, 0.015)] {
+        let points = paths.turning_points(0, paths.away(0));
+        assert!(points.len() < 2, "{points:?}");
+        assert_eq!(paths.to_and_fro(0), None);
+        assert_eq!(paths.performed(0), paths.away(0));
+    }
+}
+
+#[test]
+fn turning_points_are_the_same_in_every_direction_size_and_order_of_time() {
+    let seen = raised(2.5, 0.2);
+    let all = 0..seen.frames();
+    let points = seen.turning_points(0, all.clone());
+    assert_eq!(points.len(), 5);
+    let made = |place: &dyn Fn(usize) -> Vector3<f64>| {
+        let points = all.clone().map(|f| Some(place(f))).collect();
+        EffectorPaths::new(50.0, vec!["right_hand".into()], points).expect("paths")
+    };
+    let at = |f: usize| seen.at(f)[0].expect("seen");
+    let turn = UnitQuaternion::from_euler_angles(0.4, -1.0, 2.0);
+    let turned = made(&|f| 1.4 * (turn * at(f)));
+    assert_eq!(turned.turning_points(0, all.clone()), points);
+    let last = seen.frames() - 1;
+    let back = made(&|f| at(last - f)).turning_points(0, all.clone());
+    for (there, back) in points.iter().zip(back.iter().rev()) {
+        assert!(there.abs_diff(last - back) <= 1, "{points:?} {back:?}");
+    }
+    let nothing = EffectorPaths::new(50.0, vec!["right_hand".into()], vec![None; 9]);
+    let nothing = nothing.expect("paths");
+    assert!(nothing.turning_points(0, 0..9).is_empty());
+}
+
+#[test]
+fn the_more_moves_the_more_there_is_to_say() {
+    let settings = EncodingSettings {
+        effectors: vec!["right_hand".into()],
+        ..EncodingSettings::default()
+    };
+    let encoder = Encoder::new(vocabulary(), &settings).expect("an encoder");
+    let held = |paths: &EffectorPaths| encoder.explained(paths, &[0]).expect("explained").held;
+    let still = hand(2.0, |_| (0.4, -0.3));
+    let [small, large] = [0.1, 0.2].map(|amplitude| raised(2.0, amplitude).slice(50..150));
+    let costs = [still, small.expect("a part"), large.expect("a part")].map(|p| held(&p));
+    assert!(costs[0].abs() < 1e-9, "{costs:?}");
+    assert!(costs[0] < costs[1] && costs[1] < costs[2], "{costs:?}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use super::chains::FAR;
 use super::cost::Block;
 use super::encoder::Encoder;
+use super::extrapolation::held;
 use super::paths::EffectorPaths;
 use super::rows::Row;
 use super::track::{Leg, Tracker};
@@ -14,6 +15,8 @@ pub struct Explained {
     /// Mean cost of a decision, in units ([`super::EncodingSettings`]); what the settings charge for beginning, going
     /// over and ending is in it.
     pub cost: f64,
+    /// Mean cost of predicting that nothing moves: how much there is to say.
+    pub held: f64,
     /// The primitive of each decision, an index into the vocabulary; `None` where nothing was seen.
     pub decisions: Vec<Option<usize>>,
 }
@@ -55,6 +58,12 @@ impl Encoder<'_> {
         let legs = tracker.path(false).into_iter();
         Ok(Explained {
             cost: cost / all,
+            held: held(
+                &seen.instants,
+                &seen.blocks,
+                self.usual_unit_m(&seen),
+                &self.settings,
+            ),
             decisions: legs.zip(&seen.blocks).map(told).collect(),
         })
     }

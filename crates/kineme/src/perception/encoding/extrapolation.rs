@@ -35,6 +35,22 @@ pub(super) fn background(
     sum / all.max(1e-9)
 }
 
+/// The mean cost of predicting that each block ends where it begins, in units of `unit_m`.
+pub(super) fn held(
+    instants: &Instants,
+    blocks: &[Block],
+    unit_m: f64,
+    s: &EncodingSettings,
+) -> f64 {
+    let (mut sum, mut all) = (0.0, 0.0);
+    for (b, block) in blocks.iter().enumerate() {
+        let start = |e: usize| instants[b * SAMPLES][e].unwrap_or_default();
+        sum += block.weight * block.cost(unit_m, s, |e, _| start(e));
+        all += block.weight;
+    }
+    sum / all.max(1e-9)
+}
+
 /// How far one comes, at unit speed, whose velocity dies down as 1 - 10 u^3 + 15 u^4 - 6 u^5.
 fn stopped(u: f64) -> f64 {
     let u4 = u.powi(4);

@@ -2,7 +2,9 @@
 //!
 //! A recording of a wave begins with raising the hand and ends with lowering it, which taken by itself is another
 //! movement. The rule is of kinematics alone: a hand that hangs before or after has a place of rest, and what it does far
-//! from there is what was performed. Of a movement that is nothing but way there and back, its far part is left.
+//! from there is what was performed. Of a movement that is nothing but way there and back, its far part is left; of one
+//! that goes to and fro, what lies between its first and its last turning point: the stroke of a gesture, without its
+//! preparation and its retraction (Kendon 1980).
 
 use std::ops::Range;
 
@@ -15,6 +17,10 @@ use crate::error::{Error, Result};
 const HANGING: f64 = 0.45;
 /// From this share of the greatest distance from rest on, a hand is at what it performs.
 const FAR_SHARE: f64 = 0.7;
+/// A turning point is left again by the way it was come to, for so far at least, in reaches.
+const TURN: f64 = 0.08;
+/// The cosine between coming and going, below which a path turns back.
+const BACK: f64 = -0.3;
 /// A hand moves if its path is at least this share of the longest one's.
 const MOVING_SHARE: f64 = 0.5;
 /// Width over which paths are smoothed before they are measured, seconds.
@@ -99,11 +105,54 @@ impl EffectorPaths {
         lengths.iter().map(moves).collect()
     }
 
-    /// The frames, two at least where there are, in which an effector (an index) performs: from the first to the last
-    /// one at which it is farther from where it hung, before and after, than 0.7 of the greatest such distance. What
+    /// The frames in which an effector (an index) performs: in which it goes to and fro ([`Self::to_and_fro`]), or else all
+    /// in which it is away from rest ([`Self::away`]).
+    pub fn performed(&self, effector: usize) -> Range<usize> {
+        let to_and_fro = self.to_and_fro(effector);
+        to_and_fro.unwrap_or_else(|| self.away(effector))
+    }
+
+    /// The frames, two at least, from the first to the last turning point of an effector (an index) while it is away from
+    /// rest; `None` with fewer than two.
+    pub fn to_and_fro(&self, effector: usize) -> Option<Range<usize>> {
+        let points = self.turning_points(effector, self.away(effector));
+        let (first, last) = (*points.first()?, *points.last()?);
+        (first < last).then_some(first..last + 1)
+    }
+
+    /// The frames of a range at which an effector turns back, in order: it comes from one side and leaves to the same
+    /// one, by more than 107 degrees, both ways looked at to where they are 0.08 of the reach away. Of frames on end that
+    /// do, as around the end of a stroke or while a hand is held, the middle one. The same in space whatever the direction,
+    /// and in time forward and backward but for a frame.
+    pub fn turning_points(&self, effector: usize, within: Range<usize>) -> Vec<usize> {
+        let path = self.smoothed(effector);
+        let far = TURN * self.reach_m().unwrap_or(1.0);
+        let gap = |a: usize, b: usize| path[b] - path[a];
+        let mut points = Vec::new();
+        let mut first: Option<usize> = None;
+        let end = within.end.min(path.len());
+        for here in within.start..end {
+            let before = (0..here).rev().find(|&e| gap(e, here).norm() >= far);
+            let after = (here + 1..path.len()).find(|&g| gap(here, g).norm() >= far);
+            let back = before.zip(after).is_some_and(|(before, after)| {
+                let (come, gone) = (gap(before, here), gap(here, after));
+                come.dot(&gone) < BACK * come.norm() * gone.norm()
+            });
+            if back {
+                first = first.or(Some(here));
+            } else {
+                points.extend(first.take().map(|first| (first + here - 1) / 2));
+            }
+        }
+        points.extend(first.map(|first| (first + end - 1) / 2));
+        points
+    }
+
+    /// The frames, two at least where there are, in which an effector (an index) is away from rest: from the first to the
+    /// last one at which it is farther from where it hung, before and after, than 0.7 of the greatest such distance. What
     /// begins (ends) with a hand that does not hang, 0.45 of the reach below the shoulders, begins (ends) with the
     /// movement. All frames where nothing was seen of it.
-    pub fn performed(&self, effector: usize) -> Range<usize> {
+    pub fn away(&self, effector: usize) -> Range<usize> {
         let all = 0..self.frames();
         let path = self.smoothed(effector);
         let reach = self.reach_m().unwrap_or(1.0);
