@@ -21,10 +21,10 @@ const HYBRIDS: usize = 20;
 
 /// Damage to the first set.
 const DAMAGES: [Damage; 7] = [
+    Damage::NoiseDeg(0.25),
+    Damage::NoiseDeg(0.5),
     Damage::NoiseDeg(1.0),
     Damage::NoiseDeg(2.0),
-    Damage::NoiseDeg(3.0),
-    Damage::NoiseDeg(4.0),
     Damage::NoiseDeg(5.0),
     Damage::Lost,
     Damage::Stuck,

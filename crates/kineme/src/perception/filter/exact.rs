@@ -8,8 +8,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::around::Around;
 use super::features::Feature;
-use crate::error::{Error, Result};
+use super::going::Going;
+use crate::error::Result;
 use crate::math::eigen::principal;
 
 /// Standard deviation across the manifold, metres: sensors, and what a controller lags. Postures alone are compared: who
@@ -17,6 +19,8 @@ use crate::math::eigen::principal;
 const ACROSS_M: f64 = 0.005;
 /// Who stands still is displaced by so much in a window, metres (radians of the turn): sensors, and a body's sway.
 const SWAY_M: f64 = 0.003;
+/// Where postures jitter by so much, what the manifold itself tells counts half; the rest is what the wide measure tells.
+const JITTER_M: f64 = 0.0016;
 /// How much a squared distance counts, a second (see [`super::emission::Part`]).
 const TRUST_PER_SEC: f64 = 36.0;
 /// Movement that is not on the manifold is anywhere within so many deviations of the rows.
@@ -36,6 +40,13 @@ const BACK: f64 = 0.3;
 /// next.
 const ONWARD: f64 = 0.1;
 const TOLD: f64 = 0.1;
+/// A movement that is broken off leaves the manifold faster than it is off it. Who goes on as he does is somewhere else
+/// after so many seconds; what that is farther from where the row goes on than he is now counts by this share.
+const AHEAD_SECS: f64 = 0.08;
+const LEAVING: f64 = 0.5;
+/// Movement that is not on the manifold goes straight on from one look to the next but for so much, deviations: who
+/// leaves the manifold is sooner somewhere else than a broad Gaussian would have it.
+const STRAIGHT: f64 = 12.0;
 
 /// What may vary around the moments of the rows: vectors in the features' numbers, each as long as one deviation.
 #[derive(Debug, Clone)]
@@ -69,17 +80,8 @@ pub(super) struct Exact {
     beginning: Vec<bool>,
     /// How far a movement goes on along the tangent of phase a second at each state, deviations.
     onward: Vec<f64>,
-}
-
-/// Neighbourhoods of states: spheres that are long along the tangents.
-#[derive(Debug, Clone)]
-struct Around {
-    directions: usize,
-    /// Tangents of each state.
-    count: usize,
-    /// Of each state: its place, and `count` vectors whose products with a residual take their squares off its length;
-    /// states x (1 + count) x directions.
-    states: Vec<f64>,
+    /// Where a movement is [`AHEAD_SECS`] after each state if it goes on evenly; states x directions.
+    later: Vec<f64>,
 }
 
 impl Exact {
@@ -123,6 +125,7 @@ impl Exact {
             variances: DVector::from_vec(variances),
             log_dets: Vec::with_capacity(count),
             onward: Vec::with_capacity(count),
+            later: Vec::with_capacity(count * basis.nrows()),
             beginning: tangents.beginning.clone(),
             displaced: (0..dims).filter(|&i| !still[i] && !hidden(i)).collect(),
             known,
@@ -136,10 +139,15 @@ impl Exact {
         Ok(Some(exact))
     }
 
-    /// What the displacements of a feature cost a second if the body stands still.
-    pub fn moving(&self, feature: &Feature) -> f64 {
+    /// What the displacements of a feature cost a second if the body stands still, jittering by this variance.
+    pub fn moving(&self, feature: &Feature, jitter: f64) -> f64 {
         let squares = self.displaced.iter().map(|&i| feature.values[i].powi(2));
-        0.5 * TRUST_PER_SEC * squares.sum::<f64>() / (SWAY_M * SWAY_M)
+        0.5 * TRUST_PER_SEC * squares.sum::<f64>() / (SWAY_M * SWAY_M + 2.0 * jitter)
+    }
+
+    /// How much of what is told counts where postures jitter by this variance, a share.
+    pub fn told(jitter: f64) -> f64 {
+        1.0 / (1.0 + jitter / (JITTER_M * JITTER_M))
     }
 
     fn push(
@@ -163,50 +171,71 @@ impl Exact {
             .map(|w| w.row(0).columns(0, directions).norm_squared());
         let squared = tangent.unwrap_or(0.0);
         self.onward.push(pace * squared / (1.0 + squared).sqrt());
+        let velocity = |d: usize| along.as_ref().map_or(0.0, |w| pace * w[(0, d)]);
+        let later = place.iter().enumerate();
+        self.later
+            .extend(later.map(|(d, x)| x + AHEAD_SECS * velocity(d)));
         self.leading.push(place, along.as_ref())?;
         self.log_dets.push(self.whole.push(place, along.as_ref())?);
         Ok(())
     }
 
-    /// Logarithms of the densities a second around each state, less that of movement anywhere. Of states that are far
-    /// behind the best, bounds from above: those are told by the leading directions. Minus infinity of states along which
-    /// the body went back, or hardly on, since a moment `before` (and so many seconds ago), and, but for beginnings, of
-    /// those that the wide measure (`wide`, of which `usual` is what a moment usually costs) has far from its best.
+    /// Logarithms of the densities a second around each state, less that of movement anywhere, of a body that goes on so
+    /// and jitters by this variance. Of states that are far behind the best, bounds from above: those are told by the
+    /// leading directions. Minus infinity of states along which the body went back, or hardly on, and, but for
+    /// beginnings, of those that the wide measure (`wide`, of which `usual` is what a moment usually costs) has far from
+    /// its best.
+    ///
+    /// Returns the same of movement that goes straight on; minus infinity where that is not known.
     pub fn fit(
         &self,
         feature: &Feature,
-        before: Option<(&Feature, f64)>,
+        (going, jitter): (Option<&Going>, f64),
         (wide, usual): (&[f64], f64),
         out: &mut Vec<f64>,
-    ) {
-        let values = self.known.iter().map(|&i| feature.values[i] / ACROSS_M);
-        let off = DVector::from_iterator(self.known.len(), values) - &self.mean;
+    ) -> f64 {
+        let scaled = |values: &[f64]| {
+            let known = self.known.iter().map(|&i| values[i] / ACROSS_M);
+            DVector::from_iterator(self.known.len(), known)
+        };
+        let off = scaled(&feature.values) - &self.mean;
         let z = &self.basis * &off;
         let outside = (off.norm_squared() - z.norm_squared()).max(0.0);
         let beyond = BROAD * BROAD;
         // What no row moves need not move elsewhere either.
-        let elsewhere = (self.known.len() - z.len()) as f64 * beyond.ln();
-        let mut broad = outside.min(outside / beyond + elsewhere);
+        let unmoved = (self.known.len() - z.len()) as f64;
+        let mut broad = outside.min(outside / beyond + unmoved * beyond.ln());
         for (x, v) in z.iter().zip(self.variances.iter()) {
             broad += x * x / (v + beyond) + (v + beyond).ln();
         }
-        let z = z.as_slice();
-        let leading = z.len().min(LEADING);
+        let straight = going.and_then(|g| g.surprise.as_deref()).map(|surprise| {
+            let off = scaled(surprise);
+            let within = (&self.basis * &off).norm_squared();
+            let beside = (off.norm_squared() - within).max(0.0);
+            let wide = STRAIGHT * STRAIGHT;
+            let cost = within / wide + z.len() as f64 * wide.ln();
+            let cost = cost + outside.min(beside / wide + unmoved * wide.ln());
+            0.5 * TRUST_PER_SEC * (broad - cost)
+        });
         let log = |squared: f64, log_det: f64| {
             0.5 * TRUST_PER_SEC * (broad - outside - squared - log_det)
         };
-        let before = before.filter(|(b, _)| b.unknown == feature.unknown);
-        let gone = before.map(|(b, dt)| {
-            let steps = self.known.iter().map(|&i| feature.values[i] - b.values[i]);
-            let steps = DVector::from_iterator(self.known.len(), steps.map(|d| d / ACROSS_M));
-            (self.basis.rows(0, leading) * steps, dt)
+        let step = going.map(|g| (&self.basis * scaled(&g.step), g.secs));
+        let ahead = step.as_ref().map(|(step, secs)| {
+            let times = AHEAD_SECS / secs;
+            // What jitters now does so once more in where it will be, and what jittered before does.
+            let shaken = (1.0 + times) * (1.0 + times) + times * times;
+            let doubt = 1.0 + jitter / (ACROSS_M * ACROSS_M) * shaken;
+            (&z + step * times, doubt)
         });
+        let z = z.as_slice();
+        let leading = z.len().min(LEADING);
         let nearest = wide.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let worth = |s: usize| self.beginning[s] || wide[s] >= nearest - WORTH * usual;
         let stays = |s: usize| {
-            gone.as_ref().is_some_and(|(gone, dt)| {
-                let along = self.leading.along_phase(gone.as_slice(), s);
-                let onward = dt * self.onward[s];
+            step.as_ref().is_some_and(|(step, secs)| {
+                let along = self.leading.along_phase(&step.as_slice()[..leading], s);
+                let onward = secs * self.onward[s];
                 along < -BACK || (onward > TOLD && along < ONWARD * onward)
             })
         };
@@ -216,8 +245,18 @@ impl Exact {
         };
         out.clear();
         out.extend(self.log_dets.iter().enumerate().map(bound));
+        let leaving = |now: f64, s: usize| {
+            ahead.as_ref().map_or(0.0, |(point, doubt)| {
+                let place = &self.later[s * z.len()..(s + 1) * z.len()];
+                let then = self.whole.apart(point.as_slice(), place, s) / doubt;
+                LEAVING * (then - now).max(0.0)
+            })
+        };
         let whole = |s: usize| match self.log_dets[s] {
-            Some(d) => log(self.whole.squared(z, s), d),
+            Some(d) => {
+                let now = self.whole.squared(z, s);
+                log(now + leaving(now, s), d)
+            }
             None => f64::NEG_INFINITY,
         };
         let likely = (0..out.len()).max_by(|&a, &b| out[a].total_cmp(&out[b]));
@@ -228,55 +267,6 @@ impl Exact {
                 best = best.max(*own);
             }
         }
-    }
-}
-
-impl Around {
-    fn of(directions: usize, count: usize) -> Self {
-        Self {
-            directions,
-            count,
-            states: Vec::new(),
-        }
-    }
-
-    /// Takes a state at a place, with vectors (count x directions) along which it is long; none: only its place.
-    /// Returns the logarithm of its determinant.
-    fn push(&mut self, place: &[f64], along: Option<&DMatrix<f64>>) -> Result<Option<f64>> {
-        self.states.extend_from_slice(&place[..self.directions]);
-        let Some(along) = along else {
-            let nothing = std::iter::repeat_n(0.0, self.count * self.directions);
-            self.states.extend(nothing);
-            return Ok(None);
-        };
-        let w = along.columns(0, self.directions);
-        let inner = DMatrix::identity(self.count, self.count) + w * w.transpose();
-        let none = || Error::invalid("tangents that are no numbers");
-        let l = inner.cholesky().ok_or_else(none)?.l();
-        let u = l.solve_lower_triangular(&w).ok_or_else(none)?;
-        self.states.extend_from_slice(u.transpose().as_slice());
-        Ok(Some(2.0 * l.diagonal().iter().map(|d| d.ln()).sum::<f64>()))
-    }
-
-    /// How far a step goes along a state's tangent of phase.
-    fn along_phase(&self, step: &[f64], state: usize) -> f64 {
-        let d = self.directions;
-        let first = state * (1 + self.count) * d + d;
-        let tangent = &self.states[first..first + d];
-        step.iter().zip(tangent).map(|(x, u)| x * u).sum()
-    }
-
-    /// The squared distance of a point to a state.
-    fn squared(&self, point: &[f64], state: usize) -> f64 {
-        let (d, size) = (self.directions, (1 + self.count) * self.directions);
-        let (place, vectors) = self.states[state * size..(state + 1) * size].split_at(d);
-        let apart = |(x, y): (&f64, &f64)| (x - y) * (x - y);
-        let mut squared: f64 = point.iter().zip(place).map(apart).sum();
-        for u in vectors.chunks_exact(d) {
-            let residuals = point.iter().zip(place).zip(u);
-            let along: f64 = residuals.map(|((x, y), u)| (x - y) * u).sum();
-            squared -= along * along;
-        }
-        squared
+        straight.unwrap_or(f64::NEG_INFINITY)
     }
 }

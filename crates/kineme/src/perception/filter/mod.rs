@@ -1,10 +1,12 @@
 //! The filter: a stream is followed over primitive, parameters and phase; the default recogniser.
 
+mod around;
 mod chain;
 mod emission;
 mod evidence;
 mod exact;
 mod features;
+mod going;
 mod learned;
 mod learning;
 mod logistic;

@@ -4,7 +4,9 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::emission::Fit;
+use super::exact::Exact;
 use super::features::{Feature, Recent};
+use super::going::Looks;
 use super::manner::{Belief, Kernels};
 use super::patterns::Known;
 use super::place::{Spread, place};
@@ -39,7 +41,7 @@ pub(super) struct Stream<'a> {
     still: Vec<usize>,
     belief: Belief,
     /// What the filter last looked at, and when.
-    before: Option<Feature>,
+    looks: Looks,
     looked: Option<f64>,
     fit: Fit,
     exact: Vec<f64>,
@@ -72,7 +74,7 @@ impl<'a> Stream<'a> {
             kernels: None,
             still: still(&model.rows, &filter.network.starts),
             belief: Belief::prior(filter.network.prior(&model.rows), filter.patterns.exact()),
-            before: None,
+            looks: Looks::new(&model.layout.still()),
             looked: None,
             fit: Fit::default(),
             exact: Vec::new(),
@@ -182,15 +184,27 @@ impl<'a> Stream<'a> {
         let mut exactly = None;
         if let Some(exact) = exact {
             let wide = (self.fit.states.as_slice(), all.usual_cost());
-            let before = self.before.as_ref().map(|b| (b, dt));
-            exact.fit(feature, before, wide, &mut self.exact);
-            for log in &mut self.exact {
-                *log += self.fit.broad;
+            let going = self.looks.take(feature, dt);
+            let jitter = self.looks.jitter();
+            let straight = exact.fit(feature, (going.as_ref(), jitter), wide, &mut self.exact);
+            let told = Exact::told(jitter);
+            for (log, alike) in self.exact.iter_mut().zip(&self.fit.states) {
+                *log = match *log {
+                    // Where sensors say little, they rule out nothing.
+                    f64::NEG_INFINITY if told > 0.5 => f64::NEG_INFINITY,
+                    f64::NEG_INFINITY => *alike,
+                    log => told * (log + self.fit.broad) + (1.0 - told) * alike,
+                };
             }
             // Who stands where movements begin or end stands there exactly, and does not move.
             let logs = self.still.iter().map(|&s| dt * self.exact[s]);
-            let standing = log_mean_exp(logs) - dt * exact.moving(feature);
-            exactly = Some((self.exact.as_slice(), standing));
+            let standing = log_mean_exp(logs) - dt * exact.moving(feature, jitter);
+            let none = none + dt * (told * straight).max(0.0);
+            exactly = Some(Manifold {
+                states: &self.exact,
+                standing,
+                none,
+            });
         }
         let mut likelihood = likelihood(&self.fit.states, exactly, dt, rest, none);
         if likelihood.exact.is_none() && self.belief.exact.is_some() {
@@ -198,7 +212,6 @@ impl<'a> Stream<'a> {
             likelihood.exact = Some(likelihood.alike.clone());
         }
         self.belief.weigh(&likelihood);
-        self.before = Some(feature.clone());
         Ok(Look {
             secs,
             dt,
@@ -272,24 +285,28 @@ impl Listener for Stream<'_> {
     }
 }
 
-/// Likelihoods in both manners, up to a factor that all share, from logarithms: of the states, a second, alike and
-/// exactly, the latter with that of standing still where movements begin or end; of rest; of unknown movement.
-fn likelihood(
-    alike: &[f64],
-    exact: Option<(&[f64], f64)>,
-    dt: f64,
-    rest: f64,
+/// Logarithms of likelihoods in the exact manner: of the states, a second; of standing still where movements begin or
+/// end; of unknown movement.
+struct Manifold<'a> {
+    states: &'a [f64],
+    standing: f64,
     none: f64,
-) -> Belief {
+}
+
+/// Likelihoods in both manners, up to a factor that all share, from logarithms: of the states, a second, alike and
+/// exactly; of rest; of unknown movement.
+fn likelihood(alike: &[f64], exact: Option<Manifold<'_>>, dt: f64, rest: f64, none: f64) -> Belief {
     let highest = |logs: &[f64]| dt * logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let mut most = highest(alike).max(rest).max(none);
-    if let Some((exact, standing)) = exact {
-        most = most.max(highest(exact)).max(standing);
+    if let Some(exact) = &exact {
+        let known = highest(exact.states).max(exact.standing);
+        most = most.max(known).max(exact.none);
     }
+    let exactly =
+        |e: Manifold<'_>| Mass::likelihood(e.states, dt, rest.max(e.standing), e.none, most);
     Belief {
         alike: Mass::likelihood(alike, dt, rest, none, most),
-        exact: exact
-            .map(|(logs, standing)| Mass::likelihood(logs, dt, rest.max(standing), none, most)),
+        exact: exact.map(exactly),
     }
 }
 
