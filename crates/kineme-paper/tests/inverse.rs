@@ -7,6 +7,8 @@ use kineme::perception::{Filter, FilterSettings, calibrated};
 use kineme::primitive::{Modelling, Observations, Posterior, Recogniser, Transitions, readings};
 use kineme::{Motion, Root, Vocabulary, adonis};
 use kineme_paper::inverse::inverse;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 
 const SCRIPTS: [&str; 5] = [
     "boxing",
@@ -225,8 +227,8 @@ fn jab_way_hook(vocabulary: &Vocabulary, secs: f64) -> (Motion, usize, usize) {
 }
 
 #[test]
-fn a_movement_that_interrupts_another_is_told_from_nearly_its_beginning_and_earlier_with_hindsight()
-{
+fn a_movement_that_interrupts_another_is_told_from_nearly_its_beginning_and_no_later_with_hindsight()
+ {
     let vocabulary = &VOCABULARIES[0];
     let (motion, way, begins) = jab_way_hook(vocabulary, 0.6);
     let ends = motion.frames();
@@ -261,5 +263,36 @@ fn a_movement_that_interrupts_another_is_told_from_nearly_its_beginning_and_earl
         let hook = affirmed[begins..].iter().position(|a| *a == Some(1));
         hook.expect("a hook")
     };
-    assert!(late(&affirmed(0.1)) < late(&affirmed(0.0)));
+    let [at_once, later] = [0.0, 0.1].map(|lag_secs| late(&affirmed(lag_secs)));
+    assert!(at_once <= 4 && later <= at_once, "{at_once}, {later}");
+}
+
+#[test]
+fn noise_of_half_a_degree_hides_few_movements() {
+    let vocabulary = &VOCABULARIES[0];
+    let mut random = Pcg64::seed_from_u64(7);
+    let (mut poses, mut truth) = (Vec::new(), Vec::new());
+    for _ in 0..3 {
+        for (k, primitive) in vocabulary.primitives().iter().enumerate() {
+            let course = primitive.at(&primitive.middle()).expect("a course");
+            for f in 0..=(course.duration_secs() * 120.0) as usize {
+                // Uniform noise of this deviation on every coordinate.
+                let mut noise =
+                    || 0.5f64.to_radians() * 12f64.sqrt() * (random.random::<f64>() - 0.5);
+                let pose = course.pose(course.phase_at(f as f64 / 120.0));
+                poses.extend(pose.iter().map(|x| x + noise()));
+                truth.push(k);
+            }
+        }
+    }
+    let body = Arc::clone(vocabulary.body());
+    let roots = vec![Root::ORIGIN; truth.len()];
+    let motion = Motion::new("noisy", body, 120.0, poses, roots).expect("a motion");
+    let filter = Filter::new(vocabulary, &FilterSettings::default()).expect("a filter");
+    let answers = readings(&filter, &Observations::complete(motion)).expect("answers");
+    let pairs = answers.iter().zip(&truth);
+    let right = pairs
+        .filter(|(r, k)| r.posterior.primitives[**k] > 0.5)
+        .count();
+    assert!(10 * right >= 8 * truth.len(), "{right} of {}", truth.len());
 }

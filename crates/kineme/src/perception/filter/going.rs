@@ -28,8 +28,9 @@ pub(super) struct Looks {
     latest: Option<Feature>,
     /// How the latest look went on from the one before it.
     step: Option<(Vec<f64>, f64)>,
-    /// Mean square of what is no movement of a body, a number, square metres.
+    /// Mean square of what is no movement of a body, a number, square metres; and for how long that was looked at.
     jitter: f64,
+    lasted_secs: f64,
 }
 
 impl Looks {
@@ -40,6 +41,7 @@ impl Looks {
             latest: None,
             step: None,
             jitter: 0.0,
+            lasted_secs: 0.0,
         }
     }
 
@@ -78,7 +80,9 @@ impl Looks {
         let squares: f64 = known.map(|&i| surprise[i] * surprise[i]).sum();
         let moved = ACCELERATION * secs * secs;
         let jitter = (squares / count - moved * moved).max(0.0) / SECOND_DIFFERENCE;
-        let share = 1.0 - (-secs / MEMORY_SECS).exp();
+        // At first the mean is of all there was.
+        self.lasted_secs += secs;
+        let share = (secs / self.lasted_secs).max(1.0 - (-secs / MEMORY_SECS).exp());
         self.jitter += share * (jitter - self.jitter);
     }
 }
