@@ -20,7 +20,7 @@ use kineme_paper::recognition::latency::Fast;
 use kineme_paper::recognition::open_set::{rejections, write_rejections};
 use kineme_paper::recognition::peers::Peers;
 use kineme_paper::recognition::streams::{hear, join, judge, judge_limited};
-use kineme_paper::recognition::summary::{Line, write_lines};
+use kineme_paper::recognition::summary::{Aim, Line, write_lines};
 use kineme_paper::recognition::trials::{few, halves};
 use kineme_paper::sets::LabelledSet;
 
@@ -82,11 +82,20 @@ fn misses_are_called_misses() {
     };
     let peers = Peers::kept().expect("the peers' table");
     let cases = [
-        (line(0.9, 0.8, Some(0.85)), "| met |", "on no row below"),
         (
-            line(0.9, 0.8, Some(0.95)),
-            "| **missed** |",
+            line(0.9, 0.8, Some(Aim::alone(0.85))),
+            "| 0.85 | met |",
             "on no row below",
+        ),
+        (
+            line(0.9, 0.8, Some(Aim::beside(0.95, 0.87))),
+            "| 0.95 (0.870) | **missed** |",
+            "as far above 1NN-DTW as aimed: 1 of 1",
+        ),
+        (
+            line(0.9, 0.8, Some(Aim::beside(0.95, 0.84))),
+            "| **missed** |",
+            "as far above 1NN-DTW as aimed: 0 of 1",
         ),
         (
             line(0.7, 0.8, None),

@@ -9,7 +9,7 @@ use kineme::primitive::{Observations, readings};
 use kineme::{Motion, Skeleton};
 
 use super::known::{Known, Method};
-use super::summary::Line;
+use super::summary::{Aim, Line};
 use crate::sets::{IndexRow, LabelledSet, Result, index, load};
 use crate::table::annotations;
 
@@ -121,7 +121,7 @@ impl Exercises {
             &self.rights(&known, Method::Filter)?,
             &self.rights(&known, Method::Dtw)?,
             BLOCK,
-            Some(0.93),
+            Some(Aim::beside(0.93, 0.883)),
         )
     }
 }

@@ -7,7 +7,7 @@ use kineme::evaluation::{Bootstrap, Judged, scores};
 use super::answers::{answers, as_recorded, mean};
 use super::corpora::{Corpus, HDM05, UTD};
 use super::known::{Known, Method, primitives};
-use super::summary::{Line, shown};
+use super::summary::{Aim, Line, shown};
 use super::trials::halves;
 use crate::sets::Result;
 
@@ -107,8 +107,8 @@ pub fn write_rejections(
         )?;
     }
     let aims = match corpus.name {
-        UTD => [Some(0.92), Some(0.6)],
-        HDM05 => [Some(0.99), Some(0.6)],
+        UTD => [Some(Aim::beside(0.92, 0.794)), Some(Aim::alone(0.6))],
+        HDM05 => [Some(Aim::beside(0.99, 0.995)), Some(Aim::alone(0.6))],
         _ => [None, None],
     };
     let row = halves(corpus).row;
