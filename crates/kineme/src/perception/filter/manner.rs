@@ -120,3 +120,34 @@ fn mixed(alike: &Mass, exact: &Mass, secs: f64) -> Belief {
         exact: Some(exact.times(1.0 - change).plus(&alike.times(change))),
     }
 }
+
+/// Logarithms of likelihoods in the exact manner: of the states, a second; of standing still where movements begin or
+/// end; of unknown movement.
+pub(super) struct Manifold<'a> {
+    pub states: &'a [f64],
+    pub standing: f64,
+    pub none: f64,
+}
+
+/// Likelihoods in both manners, up to a factor that all share, from logarithms: of the states, a second, alike and
+/// exactly; of rest; of unknown movement.
+pub(super) fn likelihood(
+    alike: &[f64],
+    exact: Option<Manifold<'_>>,
+    dt: f64,
+    rest: f64,
+    none: f64,
+) -> Belief {
+    let highest = |logs: &[f64]| dt * logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let mut most = highest(alike).max(rest).max(none);
+    if let Some(exact) = &exact {
+        let known = highest(exact.states).max(exact.standing);
+        most = most.max(known).max(exact.none);
+    }
+    let exactly =
+        |e: Manifold<'_>| Mass::likelihood(e.states, dt, rest.max(e.standing), e.none, most);
+    Belief {
+        alike: Mass::likelihood(alike, dt, rest, none, most),
+        exact: exact.map(exactly),
+    }
+}

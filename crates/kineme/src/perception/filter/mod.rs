@@ -15,6 +15,7 @@ mod model;
 mod noise;
 mod patterns;
 mod place;
+mod reading;
 mod recogniser;
 mod route;
 mod rows;

@@ -7,16 +7,15 @@ use super::emission::Fit;
 use super::exact::Exact;
 use super::features::{Feature, Recent};
 use super::going::Looks;
-use super::manner::{Belief, Kernels};
+use super::manner::{Belief, Kernels, Manifold, likelihood};
 use super::patterns::Known;
-use super::place::{Spread, place};
 use super::recogniser::Filter;
 use super::rows::{FINER, Row};
 use super::sight::Sight;
 use super::track::Mass;
 use crate::error::Result;
 use crate::perception::parts::Guard;
-use crate::primitive::{Listener, Observation, Observations, Posterior, Reading};
+use crate::primitive::{Listener, Observation, Observations, Reading};
 
 /// Displacements count so much more at rest, where a body stays within half of what people differ by in movement.
 const STILL: f64 = 4.0;
@@ -285,31 +284,6 @@ impl Listener for Stream<'_> {
     }
 }
 
-/// Logarithms of likelihoods in the exact manner: of the states, a second; of standing still where movements begin or
-/// end; of unknown movement.
-struct Manifold<'a> {
-    states: &'a [f64],
-    standing: f64,
-    none: f64,
-}
-
-/// Likelihoods in both manners, up to a factor that all share, from logarithms: of the states, a second, alike and
-/// exactly; of rest; of unknown movement.
-fn likelihood(alike: &[f64], exact: Option<Manifold<'_>>, dt: f64, rest: f64, none: f64) -> Belief {
-    let highest = |logs: &[f64]| dt * logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let mut most = highest(alike).max(rest).max(none);
-    if let Some(exact) = &exact {
-        let known = highest(exact.states).max(exact.standing);
-        most = most.max(known).max(exact.none);
-    }
-    let exactly =
-        |e: Manifold<'_>| Mass::likelihood(e.states, dt, rest.max(e.standing), e.none, most);
-    Belief {
-        alike: Mass::likelihood(alike, dt, rest, none, most),
-        exact: exact.map(exactly),
-    }
-}
-
 /// The logarithm of the mean of what these are the logarithms of; minus infinity of none.
 fn log_mean_exp(logs: impl Iterator<Item = f64> + Clone) -> f64 {
     let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
@@ -328,46 +302,4 @@ fn still(rows: &[Row], starts: &[usize]) -> Vec<usize> {
         still.extend(stands.map(|k| start + k));
     }
     still
-}
-
-impl Filter<'_> {
-    /// What is thought when so much is believed of each state; where on the primitive, if the pose is given.
-    fn reading(&self, mass: &Mass, pose: Option<&[f64]>) -> Result<Reading> {
-        let rows = &self.stream.rows;
-        let mut primitives = vec![0.0; self.vocabulary.primitives().len()];
-        let mut rest = mass.rest;
-        for (r, row) in rows.iter().enumerate() {
-            let own = &mass.states[self.network.starts[r]..self.network.starts[r + 1]];
-            for (k, m) in own.iter().enumerate() {
-                let resting = row.rests(k) * m;
-                rest += resting;
-                primitives[row.primitive] += m - resting;
-            }
-        }
-        // Sums of many probabilities are one but for rounding.
-        let all = primitives.iter().sum::<f64>() + rest + mass.none;
-        for p in &mut primitives {
-            *p /= all;
-        }
-        let posterior = Posterior {
-            primitives,
-            rest: rest / all,
-            none: mass.none / all,
-        };
-        let place = match (posterior.leading().filter(|(_, p)| *p > 0.0), pose) {
-            (Some((leading, _)), Some(pose)) => {
-                let spread = Spread::of(rows, &self.network.starts, &mass.states, leading);
-                let primitive = &self.vocabulary.primitives()[leading];
-                spread
-                    .map(|s| place(primitive, leading, &s, pose))
-                    .transpose()?
-            }
-            _ => None,
-        };
-        Ok(Reading {
-            novelty: 2.0 * posterior.none,
-            posterior,
-            place,
-        })
-    }
 }
