@@ -84,7 +84,7 @@ pub fn line(corpus: &Corpus, asked: &Asked) -> Result<Line> {
 /// The answers to each clip that is asked in any split.
 ///
 /// # Errors
-/// As for [`line`].
+/// As for [`fn@line`].
 pub fn of_clips(corpus: &Corpus, splits: &[Split], method: Method) -> Result<Vec<Vec<Judged>>> {
     let mut of_clips: Vec<Vec<Judged>> = vec![Vec::new(); corpus.set.motions.len()];
     for split in splits {
