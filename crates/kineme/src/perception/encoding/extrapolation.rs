@@ -14,8 +14,7 @@ pub(super) fn background(
     unit_m: f64,
     s: &EncodingSettings,
 ) -> f64 {
-    let (mut sum, mut all) = (0.0, 0.0);
-    for (b, block) in blocks.iter().enumerate() {
+    weighted_mean(blocks, |b, block| {
         let first = b * SAMPLES;
         let start = |e: usize| instants[first][e].unwrap_or_default();
         let velocity = |e: usize| -> Vector3<f64> {
@@ -29,10 +28,8 @@ pub(super) fn background(
         let stopping = block.cost(unit_m, s, |e, k| {
             start(e) + horizon * stopped((k as f64 / horizon).min(1.0)) * velocity(e)
         });
-        sum += block.weight * held.min(straight).min(stopping);
-        all += block.weight;
-    }
-    sum / all.max(1e-9)
+        held.min(straight).min(stopping)
+    })
 }
 
 /// The mean cost of predicting that each block ends where it begins, in units of `unit_m`.
@@ -42,10 +39,18 @@ pub(super) fn held(
     unit_m: f64,
     s: &EncodingSettings,
 ) -> f64 {
+    weighted_mean(blocks, |b, block| {
+        block.cost(unit_m, s, |e, _| {
+            instants[b * SAMPLES][e].unwrap_or_default()
+        })
+    })
+}
+
+/// The mean of what each block (and its index) costs, by the blocks' weights.
+fn weighted_mean(blocks: &[Block], cost: impl Fn(usize, &Block) -> f64) -> f64 {
     let (mut sum, mut all) = (0.0, 0.0);
     for (b, block) in blocks.iter().enumerate() {
-        let start = |e: usize| instants[b * SAMPLES][e].unwrap_or_default();
-        sum += block.weight * block.cost(unit_m, s, |e, _| start(e));
+        sum += block.weight * cost(b, block);
         all += block.weight;
     }
     sum / all.max(1e-9)
