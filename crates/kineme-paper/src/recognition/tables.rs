@@ -15,7 +15,7 @@ use super::law::write_law;
 use super::open_set::{rejections, write_rejections};
 use super::peers::Peers;
 use super::streams::{dances, hear, write_streams};
-use super::summary::write_lines;
+use super::summary::{shown, write_lines};
 use super::trials::SHOTS;
 use crate::sets::Result;
 
@@ -64,8 +64,9 @@ pub fn perception_tables(
         calibrated.push(calibration::line(of, &asked)?);
     }
     if begin("exercises".into(), watch) {
-        rest.push(Exercises::read(corpus, &body)?.line()?);
-        watch(&format!("{:?}", rest.last()));
+        let line = Exercises::read(corpus, &body)?.line()?;
+        watch(&format!("{}: {}", line.row, shown(&line.ours)));
+        rest.push(line);
     }
     let pair = [Method::Filter, Method::Dtw];
     let learned_few: Vec<_> = sets
@@ -85,8 +86,9 @@ pub fn perception_tables(
             continue;
         }
         for shots in SHOTS {
-            rest.push(few_shots(of, shots, pair[0], pair[1])?);
-            watch(&format!("{:?}", rest.last()));
+            let line = few_shots(of, shots, pair[0], pair[1])?;
+            watch(&format!("{}: {}", line.row, shown(&line.ours)));
+            rest.push(line);
         }
     }
     let dances = dances(corpus, &body)?;
