@@ -264,7 +264,7 @@ fn a_movement_that_interrupts_another_is_told_from_nearly_its_beginning_and_no_l
         hook.expect("a hook")
     };
     let [at_once, later] = [0.0, 0.1].map(|lag_secs| late(&affirmed(lag_secs)));
-    assert!(at_once <= 4 && later <= at_once, "{at_once}, {later}");
+    assert!(at_once <= 2 && later <= at_once, "{at_once}, {later}");
 }
 
 #[test]

@@ -2,9 +2,9 @@
 //!
 //! [`scores`] judges answers to whole clips, [`stream_scores`] those to every frame of recordings; [`differences`] compares
 //! two recognisers on the same clips; [`pooled_scores`] judges clips that were asked in several splits, and
-//! [`calibration_by_chance`] tells what exactly right probabilities would seem to miss on so few clips. All of them are functions of what was answered: whoever wants to know how long it
-//! took measures that outside. [`NearestDtw`], [`NearestPosture`] and [`Constant`] are recognisers that anything better
-//! must beat.
+//! [`calibration_by_chance`] tells what exactly right probabilities would seem to miss on so few clips. All of them are
+//! functions of what was answered: whoever wants to know how long it took measures that outside. [`NearestDtw`],
+//! [`NearestPosture`] and [`Constant`] are recognisers that anything better must beat.
 
 mod baselines;
 mod bootstrap;
