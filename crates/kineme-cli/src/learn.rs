@@ -54,7 +54,7 @@ pub fn run(args: &LearnArgs, global: &Global) -> Result<u8, Failure> {
         primitives: vec![p.name().into()],
     });
     let behaviors = behaviors.collect();
-    let transitions = Transitions::none(primitives.len());
+    let transitions = Transitions::observed(&primitives);
     let vocabulary = Vocabulary::new(Arc::clone(&body), primitives, behaviors, transitions)?;
     let vocabulary = calibrated(vocabulary, None)?;
     let told = describe::all(&vocabulary, &args.out.display().to_string(), global)?;

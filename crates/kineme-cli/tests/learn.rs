@@ -161,6 +161,8 @@ fn manifests_take_spans_of_files_and_archives_wherever_they_lie() {
     assert_eq!(names(&shown), ["a", "b"], "in the order of the labels");
     let a = &shown.primitives()[0];
     assert_eq!(a.exemplars().len(), 3);
+    // `b` begins where the first `a` ends, the second `a` where `b` does; the third comes later.
+    assert_eq!(shown.transitions().counts, [0, 1, 1, 0]);
     for (e, start) in a.exemplars().iter().zip([0.0, 3.0, 6.0]) {
         let from = &e.provenance;
         // The file's frame time is rounded.

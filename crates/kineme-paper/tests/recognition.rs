@@ -415,6 +415,19 @@ fn exercises_are_cut_and_watched() {
         .map(Motion::duration_secs)
         .fold(0.0, f64::max);
     assert!(longest < 4.1, "{longest} s");
+    // Two recordings are cut whole, up to what is left of a run after its last repetition.
+    let begun = &e.begin_secs;
+    assert_eq!(begun.len(), e.pieces.motions.len());
+    let joined = |i: &usize| {
+        let end = begun[i - 1] + e.pieces.motions[i - 1].duration_secs();
+        (begun[*i] - end).abs() < 0.1
+    };
+    let (twice, all) = (
+        begun.windows(2).filter(|w| w[1] < w[0]).count(),
+        begun.len(),
+    );
+    assert_eq!(twice, 1, "{begun:?}");
+    assert!(2 * (1..all).filter(joined).count() > all, "{begun:?}");
     for class in 0..7 {
         assert!(e.pieces.labels.contains(&class), "{class}");
     }

@@ -5,7 +5,9 @@ use std::sync::{Arc, LazyLock};
 
 use kineme::choreography::{Key, perform};
 use kineme::primitive::{Interpolation, Parameterisation};
-use kineme::{Exemplar, Modelling, Primitive, Provenance, Role, Skeleton, adonis, ares};
+use kineme::{
+    Exemplar, Modelling, Primitive, Provenance, Role, Skeleton, Transitions, adonis, ares,
+};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
@@ -100,6 +102,35 @@ fn an_exact_interpolator_returns_the_registered_exemplar_at_its_own_parameters()
             }
         }
     }
+}
+
+#[test]
+fn what_was_cut_out_of_one_recording_tells_what_followed_what() {
+    let body = Arc::new(ares().expect("a body"));
+    // Recording, first and last second of each exemplar of two primitives.
+    let learned = |name: &str, cut: &[(&str, f64, f64)]| {
+        let placed = |&(motion, start_secs, end_secs): &(&str, f64, f64)| {
+            let mut placed = exemplar(&body, motion, &reach_keys(0.5, 0.5, 1.0), None);
+            let from = &mut placed.provenance;
+            (from.start_secs, from.end_secs) = (start_secs, end_secs);
+            placed
+        };
+        let exemplars = cut.iter().map(placed).collect();
+        Primitive::learn(name, exemplars, &Modelling::default()).expect("a primitive")
+    };
+    let again = [("day", 0.0, 1.0), ("day", 1.0, 2.0), ("day", 2.05, 3.0)];
+    let primitives = [
+        learned("again", &again),
+        learned("after", &[("day", 3.0, 4.0), ("night", 1.0, 2.0)]),
+    ];
+    let observed = Transitions::observed(&primitives);
+    assert_eq!((observed.n, observed.counts), (2, vec![2, 1, 0, 0]));
+    // Files of their own all begin at 0, and a gap is no succession.
+    let apart = [
+        learned("a", &[("a", 0.0, 1.0), ("b", 0.0, 1.0)]),
+        learned("b", &[("a", 1.2, 2.0), ("c", 1.0, 2.0)]),
+    ];
+    assert_eq!(Transitions::observed(&apart), Transitions::none(2));
 }
 
 #[test]

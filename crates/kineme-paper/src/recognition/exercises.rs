@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use kineme::alignment::period;
 use kineme::motion::landmark_dims;
-use kineme::primitive::{Observations, readings};
+use kineme::primitive::{Exemplar, Observations, readings};
 use kineme::{Motion, Skeleton};
 
-use super::known::{Known, Method};
+use super::known::{Known, Method, learned};
 use super::summary::{Aim, Line};
+use crate::models::exemplar;
 use crate::sets::{IndexRow, LabelledSet, Result, index, load};
 use crate::table::annotations;
 
@@ -27,6 +28,8 @@ const TRIALS: [&str; 3] = ["13_29", "13_30", "13_31"];
 pub struct Exercises {
     /// Single repetitions, or pieces of 2.5 s where there is no period, of the first two recordings.
     pub pieces: LabelledSet,
+    /// Where each piece begins in its recording, seconds.
+    pub begin_secs: Vec<f64>,
     /// The third.
     pub stream: Motion,
     /// Its class at every 0.1 s.
@@ -56,6 +59,7 @@ impl Exercises {
             labels: Vec::new(),
             classes,
         };
+        let mut begin_secs = Vec::new();
         let [first, second, stream] = whole.motions.as_slice() else {
             return Err("three recordings of exercises are needed".into());
         };
@@ -64,7 +68,10 @@ impl Exercises {
             for run in annotation.labels.chunk_by(|a, b| a == b) {
                 let frame = |s: usize| (s as f64 * motion.rate_hz() / annotation.rate_hz) as usize;
                 let part = motion.slice(frame(step)..frame(step + run.len()))?;
+                let mut first = frame(step);
                 for piece in repetitions(&part)? {
+                    begin_secs.push(first as f64 / motion.rate_hz());
+                    first += piece.frames();
                     pieces.motions.push(piece);
                     pieces.labels.push(run[0]);
                 }
@@ -73,6 +80,7 @@ impl Exercises {
         }
         Ok(Self {
             pieces,
+            begin_secs,
             stream: stream.clone(),
             truth: truth.remove(2).labels,
         })
@@ -101,13 +109,22 @@ impl Exercises {
         Ok(self.truth.iter().enumerate().map(right).collect())
     }
 
-    /// All pieces learned.
+    /// All pieces learned, each with its place in its recording, which tells what followed what.
     ///
     /// # Errors
     /// When a primitive cannot be learned.
     pub fn learn(&self) -> Result<Known> {
-        let all: Vec<usize> = (0..self.pieces.motions.len()).collect();
-        Known::learn(&self.pieces, &all)
+        let exemplars = |class: usize| -> Vec<Exemplar> {
+            let of = |i: &usize| self.pieces.labels[*i] == class;
+            let placed = |i: usize| {
+                let mut piece = exemplar(&self.pieces.motions[i]);
+                piece.provenance.start_secs = self.begin_secs[i];
+                piece.provenance.end_secs += self.begin_secs[i];
+                piece
+            };
+            (0..self.begin_secs.len()).filter(of).map(placed).collect()
+        };
+        Known::of(learned(&self.pieces.classes, &exemplars)?)
     }
 
     /// The row among the aims.

@@ -6,7 +6,9 @@ use kineme::evaluation::{
 };
 use kineme::perception::encoding::{Encoder, EncodingSettings};
 use kineme::perception::{Filter, FilterSettings, Frame, FrameSettings, Paper, PaperSettings};
-use kineme::primitive::{Mismatched, Modelling, Primitive, Recogniser, Transitions, Vocabulary};
+use kineme::primitive::{
+    Exemplar, Mismatched, Modelling, Primitive, Recogniser, Transitions, Vocabulary,
+};
 use rayon::prelude::*;
 
 use crate::models::exemplar;
@@ -103,24 +105,35 @@ pub struct Known {
 /// # Errors
 /// As for [`Primitive::learn`].
 pub fn primitives(set: &LabelledSet, clips: &[usize]) -> Result<Vec<Option<Primitive>>> {
+    let exemplars = |class: usize| -> Vec<Exemplar> {
+        let of = |i: &&usize| set.labels[**i] == class;
+        let motion = |i: &usize| -> &Motion { &set.motions[*i] };
+        clips.iter().filter(of).map(motion).map(exemplar).collect()
+    };
+    learned(&set.classes, &exemplars)
+}
+
+/// The same of the exemplars of each class.
+pub(super) fn learned(
+    classes: &[String],
+    exemplars: &(dyn Fn(usize) -> Vec<Exemplar> + Sync),
+) -> Result<Vec<Option<Primitive>>> {
     let modelling = Modelling {
         mismatched: Mismatched::LeaveOut,
         ..Modelling::default()
     };
     let learn = |class: usize| {
-        let of = |i: &&usize| set.labels[**i] == class;
-        let motion = |i: &usize| -> &Motion { &set.motions[*i] };
-        let exemplars: Vec<_> = clips.iter().filter(of).map(motion).map(exemplar).collect();
+        let exemplars = exemplars(class);
         if exemplars.is_empty() {
             return Ok(None);
         }
         Ok(Some(Primitive::learn(
-            &set.classes[class],
+            &classes[class],
             exemplars,
             &modelling,
         )?))
     };
-    (0..set.classes.len()).into_par_iter().map(learn).collect()
+    (0..classes.len()).into_par_iter().map(learn).collect()
 }
 
 impl Known {
@@ -133,7 +146,7 @@ impl Known {
         let class_of = (0..classes).filter(|&c| primitives[c].is_some()).collect();
         let primitives: Vec<Primitive> = primitives.into_iter().flatten().collect();
         let body = primitives.first().ok_or("no primitives")?.body().clone();
-        let transitions = Transitions::none(primitives.len());
+        let transitions = Transitions::observed(&primitives);
         let vocabulary = Vocabulary::new(body, primitives, Vec::new(), transitions)?;
         let unlearned = vec![None; vocabulary.primitives().len()];
         let calibration = Filter::calibration(&vocabulary, &unlearned)?;

@@ -4,9 +4,13 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::calibration::Calibration;
+use super::exemplar::Provenance;
 use super::model::Primitive;
 use crate::error::{Error, Result};
 use crate::skeleton::Skeleton;
+
+/// An exemplar follows another that ends so near to where it begins, seconds: people mark no finer.
+const JOINED_SECS: f64 = 0.1;
 
 /// Primitives that belong to one behaviour: the second level of the derivation.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -33,6 +37,28 @@ impl Transitions {
             counts: vec![0; n * n],
             n,
         }
+    }
+
+    /// Successions among the exemplars themselves: wherever one begins where another of the same recording ends, give or
+    /// take a tenth of a second. Repetitions cut out of one recording follow one another; clips from files of their own
+    /// tell nothing.
+    pub fn observed(primitives: &[Primitive]) -> Self {
+        let all: Vec<(usize, &Provenance)> = primitives
+            .iter()
+            .enumerate()
+            .flat_map(|(k, p)| p.exemplars().iter().map(move |e| (k, &e.provenance)))
+            .collect();
+        let mut observed = Self::none(primitives.len());
+        for (i, (from, before)) in all.iter().enumerate() {
+            for (j, (to, after)) in all.iter().enumerate() {
+                let joined = (after.start_secs - before.end_secs).abs() <= JOINED_SECS;
+                let recorded = before.motion == after.motion && before.blake3 == after.blake3;
+                if i != j && joined && recorded {
+                    observed.counts[from * observed.n + to] += 1;
+                }
+            }
+        }
+        observed
     }
 
     /// How often `to` followed `from`.
