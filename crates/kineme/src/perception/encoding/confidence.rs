@@ -109,6 +109,8 @@ mod tests {
             mixed.spread < SPREAD && many.spread < 0.5 * mixed.spread,
             "{mixed:?} {many:?}"
         );
+        // Those of a few people tell little of the next one.
+        assert!(learned(lead, [8, 1]).spread > 0.6);
         // Odds of eight to one at this lead ask for a temperature of lead / ln 8.
         let wanted = lead / 8f64.ln();
         assert!(
@@ -135,6 +137,7 @@ mod tests {
             assert!(all[1] > all[2] && all[2] > all[0] && all[3] == 0.0);
         }
         assert!(believed[0] > 5.0 * known[0], "{known:?} {believed:?}");
-        assert!(of(1e4).iter().all(|share| share.is_finite()));
+        let sum = of(1e4).iter().sum::<f64>();
+        assert!((sum - 1.0).abs() < 1e-9, "{sum}");
     }
 }
