@@ -57,20 +57,13 @@ pub struct Movement {
 pub struct Hand {
     /// While it was away from rest.
     pub away: EffectorPaths,
-    /// While it went to and fro, from its first turning point to its last, if it did.
-    pub to_and_fro: Option<EffectorPaths>,
-}
-
-impl Hand {
-    /// While it performed: to and fro, or else all the while it was away.
-    pub fn performed(&self) -> &EffectorPaths {
-        self.to_and_fro.as_ref().unwrap_or(&self.away)
-    }
+    /// While it performed: to and fro, from its first turning point to its last, or else all the while it was away.
+    pub performed: EffectorPaths,
 }
 
 impl Movement {
     /// By the hands' own kinematics: [`EffectorPaths::moving`] says which hands, [`EffectorPaths::away`] and
-    /// [`EffectorPaths::to_and_fro`] when.
+    /// [`EffectorPaths::performed`] when.
     ///
     /// # Errors
     /// When the body has no hands or shoulders.
@@ -96,10 +89,9 @@ impl Movement {
             if moving[hand] {
                 let span = paths.performed(hand);
                 let one = seen.only(&[HAND])?;
-                let to_and_fro = paths.to_and_fro(hand).map(|frames| one.slice(frames));
                 hands.push(Hand {
                     away: one.slice(paths.away(hand))?,
-                    to_and_fro: to_and_fro.transpose()?,
+                    performed: one.slice(span.clone())?,
                 });
                 spans.push(span);
             }
@@ -155,14 +147,12 @@ pub fn costs(encoder: &Encoder<'_>, movement: &Movement, sets: &[usize]) -> Resu
     let mut sums = [0.0; SETS.len()];
     let (mut held, mut all) = (0.0, 0.0);
     for hand in &movement.hands {
-        let paths = hand.performed();
-        let secs = paths.duration_secs();
-        let paths = enlarged(paths, SMALLEST * movement.reach_m)?;
+        let secs = hand.performed.duration_secs();
+        let paths = enlarged(&hand.performed, SMALLEST * movement.reach_m)?;
+        held += secs * encoder.held(&paths)?;
         for (set, sum) in sums.iter_mut().enumerate() {
             let own: Vec<usize> = (0..sets.len()).filter(|p| sets[*p] == set).collect();
-            let told = encoder.explained(&paths, &own)?;
-            *sum += secs * told.cost;
-            held += secs * told.held / SETS.len() as f64;
+            *sum += secs * encoder.explained(&paths, &own)?.cost;
         }
         all += secs;
     }

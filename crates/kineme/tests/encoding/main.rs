@@ -5,7 +5,8 @@ mod performed;
 mod vocabulary;
 
 use kineme::perception::encoding::{
-    EffectorPaths, Encoder, Encoding, EncodingMethod, EncodingSettings, Extent, Matching, Rejection,
+    Confidence, EffectorPaths, Encoder, Encoding, EncodingMethod, EncodingSettings, Extent,
+    Matching, Rejection,
 };
 use kineme::primitive::{Observations, Posterior, Recogniser, readings};
 use kineme::{Format, Observed, RecordedJoint, Recording, Source};
@@ -394,11 +395,54 @@ fn a_rejection_is_plain_numbers_that_serve_again() {
     };
     let broken = Rejection {
         bias: f64::NAN,
+        ..kept.clone()
+    };
+    let unsure = Rejection {
+        confidence: Confidence {
+            spread: -0.1,
+            ..kept.confidence
+        },
         ..kept
     };
-    for wrong in [short, broken] {
+    for wrong in [short, broken, unsure] {
         assert!(Encoder::with_rejection(vocabulary(), &settings, wrong).is_err());
     }
+}
+
+#[test]
+fn a_clip_of_one_part_is_as_sure_of_it_as_of_the_whole() {
+    let settings = EncodingSettings::default();
+    let fitted = encoder(&settings);
+    let encoding = |confidence| {
+        let rejection = Rejection {
+            confidence,
+            ..fitted.rejection().clone()
+        };
+        let encoder = Encoder::with_rejection(vocabulary(), &settings, rejection);
+        let encoder = encoder.expect("an encoder");
+        encoder
+            .encode("hook", &paths(&made("hook", 0.3)))
+            .expect("an encoding")
+    };
+    let [sure, modest] = [0.01, 0.05].map(|temperature| {
+        encoding(Confidence {
+            temperature,
+            spread: 0.5,
+        })
+    });
+    let known = |e: &Encoding| {
+        let (k, none) = (e.label().expect("a label"), e.posterior.none);
+        let [only] = e.spans.as_slice() else {
+            panic!("one part: {:?}", e.spans);
+        };
+        let share = e.posterior.primitives[k] / (1.0 - none);
+        assert!((only.confidence - share).abs() < 1e-9, "{e:?}");
+        share
+    };
+    assert!(known(&sure) > known(&modest));
+    // How sure the choice is, is no matter of whether it is any of them.
+    assert_eq!(modest.posterior.none, sure.posterior.none);
+    assert_eq!(modest.label(), sure.label());
 }
 
 #[test]

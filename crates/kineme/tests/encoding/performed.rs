@@ -120,7 +120,7 @@ fn the_more_moves_the_more_there_is_to_say() {
         ..EncodingSettings::default()
     };
     let encoder = Encoder::new(vocabulary(), &settings).expect("an encoder");
-    let held = |paths: &EffectorPaths| encoder.explained(paths, &[0]).expect("explained").held;
+    let held = |paths: &EffectorPaths| encoder.held(paths).expect("a cost");
     let still = hand(2.0, |_| (0.4, -0.3));
     let [small, large] = [0.1, 0.2].map(|amplitude| raised(2.0, amplitude).slice(50..150));
     let costs = [still, small.expect("a part"), large.expect("a part")].map(|p| held(&p));

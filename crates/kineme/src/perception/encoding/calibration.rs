@@ -1,5 +1,6 @@
 //! What the encoder learns of a vocabulary, kept with it: its [`Rejection`] as a [`Calibration`].
 
+use super::confidence::Confidence;
 use super::encoder::{Encoder, checked_rows};
 use super::paths::Chains;
 use super::rejection::{Rejection, SCORES};
@@ -10,8 +11,8 @@ use crate::skeleton::Skeleton;
 
 /// The recogniser that a calibration names.
 const NAME: &str = "encoder";
-/// Shared numbers: limit, temperature and bias, then the weights.
-const SHARED: usize = 3 + SCORES;
+/// Shared numbers: limit, temperature, bias, the temperature of clips and its spread, then the weights.
+const SHARED: usize = 5 + SCORES;
 
 impl Encoder<'_> {
     /// Whether a body has the shoulders and hands that the default settings look at.
@@ -40,7 +41,11 @@ impl Encoder<'_> {
 
 impl Rejection {
     fn calibration(&self) -> Calibration {
-        let mut shared = vec![self.limit, self.temperature, self.bias];
+        let Confidence {
+            temperature,
+            spread,
+        } = self.confidence;
+        let mut shared = vec![self.limit, self.temperature, self.bias, temperature, spread];
         shared.extend(self.weights);
         Calibration {
             recogniser: NAME.into(),
@@ -74,6 +79,10 @@ impl Rejection {
             limit: fixed[0],
             temperature: fixed[1],
             bias: fixed[2],
+            confidence: Confidence {
+                temperature: fixed[3],
+                spread: fixed[4],
+            },
             weights: std::array::from_fn(|i| weights[i]),
         }
         .checked(vocabulary)

@@ -180,7 +180,7 @@ impl<'a> Encoder<'a> {
     }
 
     /// Whether an observation is taken for one movement.
-    fn is_clip(&self, secs: f64) -> bool {
+    pub(super) fn is_clip(&self, secs: f64) -> bool {
         let cells = self.rows.iter().map(Row::cells).max().unwrap_or(0);
         let longest = cells as f64 * self.settings.cell_secs();
         match self.settings.extent {
@@ -231,7 +231,7 @@ impl<'a> Encoder<'a> {
             }
         } else if clip {
             let none = self.rejection.none(&evidence);
-            let known = shares(&evidence.costs, self.rejection.temperature);
+            let known = self.rejection.confidence.shares(&evidence.costs);
             Posterior {
                 primitives: known.into_iter().map(|p| (1.0 - none) * p).collect(),
                 rest: 0.0,

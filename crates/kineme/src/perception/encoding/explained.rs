@@ -15,13 +15,22 @@ pub struct Explained {
     /// Mean cost of a decision, in units ([`super::EncodingSettings`]); what the settings charge for beginning, going
     /// over and ending is in it.
     pub cost: f64,
-    /// Mean cost of predicting that nothing moves: how much there is to say.
-    pub held: f64,
     /// The primitive of each decision, an index into the vocabulary; `None` where nothing was seen.
     pub decisions: Vec<Option<usize>>,
 }
 
 impl Encoder<'_> {
+    /// Mean cost of a decision of predicting that nothing moves, in units: how much there is to say of paths. 0 where they
+    /// have no decision.
+    ///
+    /// # Errors
+    /// When the paths are of other effectors than the encoder's.
+    pub fn held(&self, paths: &EffectorPaths) -> Result<f64> {
+        let seen = self.seen(paths)?;
+        let unit_m = self.usual_unit_m(&seen);
+        Ok(held(&seen.instants, &seen.blocks, unit_m, &self.settings))
+    }
+
     /// Follows paths through the primitives of `among` alone, each as often as it likes, without rest and without a
     /// refusal. What two sets of primitives cost can be compared: the lower cost resembles more.
     ///
@@ -58,12 +67,6 @@ impl Encoder<'_> {
         let legs = tracker.path(false).into_iter();
         Ok(Explained {
             cost: cost / all,
-            held: held(
-                &seen.instants,
-                &seen.blocks,
-                self.usual_unit_m(&seen),
-                &self.settings,
-            ),
             decisions: legs.zip(&seen.blocks).map(told).collect(),
         })
     }

@@ -3,6 +3,7 @@
 
 mod calibration;
 mod chains;
+mod confidence;
 mod cost;
 mod decided;
 mod encoded;
@@ -21,6 +22,7 @@ mod rows;
 mod settings;
 mod track;
 
+pub use confidence::Confidence;
 pub use decided::Decided;
 pub use encoder::Encoder;
 pub use explained::Explained;

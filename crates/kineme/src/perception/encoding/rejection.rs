@@ -5,6 +5,7 @@ use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
 use super::chains::{Ends, FAR, chain, class_costs, shares};
+use super::confidence::Confidence;
 use super::cost::{blocks, instants};
 use super::extrapolation::background;
 use super::paths::EffectorPaths;
@@ -30,7 +31,7 @@ const LIMIT_WEIGHT: f64 = 6.0;
 const PLAIN_LIMIT: f64 = 0.5;
 /// Ridge of the weights of standardised scores.
 const RIDGE: f64 = 1.0;
-/// Temperatures of the posterior that are tried.
+/// Temperatures that are tried where the nearer half of a primitive is not known.
 const TEMPERATURES: [f64; 12] = [
     0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.08, 0.12, 0.18, 0.25,
 ];
@@ -43,8 +44,11 @@ pub struct Rejection {
     pub limits: Vec<f64>,
     /// The same of all primitives together: what a decision of an unknown movement costs.
     pub limit: f64,
-    /// Temperature of the posterior over the primitives.
+    /// Temperature of the posterior over the primitives where the nearer half of the true one is not known: of streams,
+    /// and of what refusing may cost.
     pub temperature: f64,
+    /// Temperature of the posterior of a clip.
+    pub confidence: Confidence,
     /// Log odds of being known: `bias` plus these times cost, margin to the second primitive, logarithm of the median
     /// primitive over the best, of extrapolation over the best, and of the best one's limit over its cost.
     pub weights: [f64; SCORES],
@@ -110,12 +114,19 @@ impl Rejection {
     /// The same numbers for a vocabulary, or that they are not of it.
     pub(super) fn checked(self, vocabulary: &Vocabulary) -> Result<Self> {
         let numbers = self.limits.iter().chain(&self.weights);
+        let Confidence {
+            temperature,
+            spread,
+        } = &self.confidence;
         let finite = numbers
             .chain([&self.limit, &self.temperature, &self.bias])
+            .chain([temperature, spread])
             .all(|v| v.is_finite());
-        let positive = self.limits.iter().chain([&self.limit, &self.temperature]);
+        let shared = [&self.limit, &self.temperature, temperature];
+        let positive = self.limits.iter().chain(shared);
         if self.limits.len() != vocabulary.primitives().len()
             || !finite
+            || *spread < 0.0
             || positive.into_iter().any(|v| *v <= 0.0)
         {
             return Err(Error::invalid(format!(
@@ -172,6 +183,10 @@ impl Rejection {
             .filter_map(|c| scores(c.unknown.as_ref()))
             .collect();
         let temperature = temperature(&cases);
+        let alone = cases
+            .iter()
+            .filter_map(|c| Some((c.alone.as_deref()?, c.primitive)));
+        let confidence = Confidence::learned(&alone.collect::<Vec<_>>());
         let (weights, bias) = match known.len().min(unknown.len()) >= LEAST_CASES {
             true => {
                 let (weights, bias) = logistic(&known, &unknown);
@@ -188,6 +203,10 @@ impl Rejection {
             false => ([0.0, 0.0, 0.0, 0.0, LIMIT_WEIGHT], 0.0),
         };
         Ok(Self {
+            confidence: confidence.unwrap_or(Confidence {
+                temperature,
+                spread: 0.0,
+            }),
             temperature,
             limits,
             limit,
@@ -200,6 +219,8 @@ impl Rejection {
 /// An exemplar encoded by the others.
 struct Case {
     primitive: usize,
+    /// The costs without itself; `None` for a primitive of one exemplar, and where there is no other primitive.
+    alone: Option<Vec<f64>>,
     /// Without itself and the nearer half of its primitive; `None` for a primitive of one exemplar.
     known: Option<Evidence>,
     /// Without its primitive; `None` where there is no other.
@@ -226,13 +247,17 @@ impl Case {
         let others = near.len();
         near.truncate(others / 2);
         let background = background(&instants, &blocks, unit_m, s);
+        let of = |counts: &dyn Fn(usize) -> bool| {
+            class_costs(rows, &costs, primitives.len(), s.temperature, counts)
+        };
         let evidence = |counts: &dyn Fn(usize) -> bool| Evidence {
-            costs: class_costs(rows, &costs, primitives.len(), s.temperature, counts),
+            costs: of(counts),
             background,
         };
         let seen = !blocks.is_empty();
         Ok(Self {
             primitive: own,
+            alone: (seen && others > 0 && primitives.len() > 1).then(|| of(&|r| r != row)),
             known: (seen && others > 0).then(|| evidence(&|r| r != row && !near.contains(&r))),
             unknown: (seen && primitives.len() > 1)
                 .then(|| evidence(&|r| rows[r].primitive != own)),

@@ -117,12 +117,16 @@ impl Encoder<'_> {
     pub(super) fn spans(&self, verdict: &Verdict, seen: &Seen, secs: f64) -> Vec<EncodedSpan> {
         let decision = self.settings.decision_secs;
         let last = seen.blocks.len();
+        let clip = self.is_clip(seen.duration_secs);
         let mut spans: Vec<EncodedSpan> = verdict
             .stretches
             .iter()
             .map(|stretch| {
                 let best = best_two(&stretch.costs, stretch.primitive);
-                let known = shares(&stretch.costs, self.rejection.temperature);
+                let known = match clip {
+                    true => self.rejection.confidence.shares(&stretch.costs),
+                    false => shares(&stretch.costs, self.rejection.temperature),
+                };
                 EncodedSpan {
                     start_secs: stretch.blocks.start as f64 * decision,
                     end_secs: match stretch.blocks.end == last {
