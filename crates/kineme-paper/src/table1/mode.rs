@@ -44,6 +44,12 @@ impl Mode {
         held_secs: 0.0,
     };
 
+    /// The filter with a tenth of a second of hindsight.
+    pub const HINDSIGHT: Mode = Mode::Filter {
+        lag_secs: 0.1,
+        held_secs: 0.0,
+    };
+
     /// Its name in the tables.
     pub fn name(self) -> String {
         match self {
@@ -111,11 +117,30 @@ impl Mode {
         })
     }
 
+    /// Whether another way decides by the same answers, and merely holds longer or less long.
+    pub fn shares(self, other: Mode) -> bool {
+        match (self, other) {
+            (Mode::Filter { lag_secs: a, .. }, Mode::Filter { lag_secs: b, .. }) => a == b,
+            _ => self == other,
+        }
+    }
+
     /// What is decided of every frame of a motion, by what [`Self::over`] made over `classes` behaviours.
     ///
     /// # Errors
     /// When the motion is of another body.
     pub fn decide(
+        self,
+        recogniser: Option<&dyn Recogniser>,
+        classes: usize,
+        seen: &Observations,
+    ) -> Result<Decisions> {
+        let answered = self.answered(recogniser, classes, seen)?;
+        Ok(self.held(answered, classes, seen.motion().rate_hz()))
+    }
+
+    /// What [`Self::decide`] decides before anything is held.
+    pub(super) fn answered(
         self,
         recogniser: Option<&dyn Recogniser>,
         classes: usize,
@@ -151,15 +176,19 @@ impl Mode {
         };
         let of = |f: usize| &answers[(f + lag).min(frames - 1)].posterior.primitives;
         let probable: Vec<f64> = (0..frames).flat_map(|f| of(f).iter().copied()).collect();
-        let mut affirmed: Vec<bool> = probable.iter().map(|p| *p > 0.5).collect();
-        if let Mode::Filter { held_secs, .. } = self {
-            let least = (held_secs * rate).round() as usize;
-            drop_short(&mut affirmed, classes, least);
-        }
         Ok(Decisions {
-            affirmed,
+            affirmed: probable.iter().map(|p| *p > 0.5).collect(),
             probable: Some(probable),
         })
+    }
+
+    /// Decisions without what is not affirmed for as long as this way wants it.
+    pub(super) fn held(self, mut decided: Decisions, classes: usize, rate_hz: f64) -> Decisions {
+        if let Mode::Filter { held_secs, .. } = self {
+            let least = (held_secs * rate_hz).round() as usize;
+            drop_short(&mut decided.affirmed, classes, least);
+        }
+        decided
     }
 }
 

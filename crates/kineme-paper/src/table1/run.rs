@@ -56,7 +56,7 @@ impl Default for TableSettings {
     }
 }
 
-/// The ways of deciding of the main table.
+/// The ways of deciding of the main table; those that share their answers stand side by side.
 const MODES: [Mode; 9] = [
     Mode::Never,
     Mode::Paper { n: 1, stride: 1 },
@@ -64,10 +64,7 @@ const MODES: [Mode; 9] = [
     Mode::Frame { n: 1, stride: 1 },
     FRAME,
     Mode::FILTER,
-    Mode::Filter {
-        lag_secs: 0.1,
-        held_secs: 0.0,
-    },
+    Mode::HINDSIGHT,
     Mode::Filter {
         lag_secs: 0.1,
         held_secs: 0.1,
@@ -101,16 +98,41 @@ impl<'v> Judge<'v> {
         })
     }
 
-    fn tally(&self, clip: &Clip) -> Result<Tally> {
+    /// The tallies of a clip, one for each of the ways that share this judge's answers.
+    fn tally(&self, clip: &Clip, ways: &[Mode]) -> Result<Vec<Tally>> {
         let classes = self.vocabulary.primitives().len();
         let recogniser = self.recogniser.as_deref();
-        let decisions = self.mode.decide(recogniser, classes, &clip.seen)?;
-        Tally::of(clip, &decisions, classes)
+        let answered = self.mode.answered(recogniser, classes, &clip.seen)?;
+        let rate_hz = clip.motion().rate_hz();
+        let one = |way: &Mode| {
+            let decisions = way.held(answered.clone(), classes, rate_hz);
+            Tally::of(clip, &decisions, classes)
+        };
+        ways.iter().map(one).collect()
     }
 
     pub(super) fn tallies(&self, clips: &[&Clip], altered: Altered) -> Result<Vec<Tally>> {
-        let one = |clip: &&Clip| self.tally(&altered.of(clip, self.vocabulary)?);
-        clips.par_iter().map(one).collect()
+        let ways = [self.mode];
+        let one = |clip: &&Clip| self.tally(&altered.of(clip, self.vocabulary)?, &ways);
+        let all: Vec<Vec<Tally>> = clips.par_iter().map(one).collect::<Result<_>>()?;
+        Ok(all.concat())
+    }
+
+    /// The rows of ways that share this judge's answers.
+    fn rows(
+        &self,
+        set: &str,
+        clips: &[&Clip],
+        altered: Altered,
+        ways: &[Mode],
+    ) -> Result<Vec<Row>> {
+        let one = |clip: &&Clip| self.tally(&altered.of(clip, self.vocabulary)?, ways);
+        let all: Vec<Vec<Tally>> = clips.par_iter().map(one).collect::<Result<_>>()?;
+        let of = |(k, way): (usize, &Mode)| {
+            let own: Vec<Tally> = all.iter().map(|tallies| tallies[k].clone()).collect();
+            Row::of(set, *way, altered, &own)
+        };
+        ways.iter().enumerate().map(of).collect()
     }
 
     pub(super) fn row(&self, set: &str, clips: &[&Clip], altered: Altered) -> Result<Row> {
@@ -166,11 +188,19 @@ pub fn table1(settings: &TableSettings, watch: &mut dyn FnMut(&str)) -> Result<T
         left_files: captured.left.iter().map(|(c, ..)| c.name.clone()).collect(),
         timings: Vec::new(),
     };
-    for mode in MODES {
-        let judge = Judge::new(mode, &vocabulary)?;
+    for ways in MODES.chunk_by(|a, b| a.shares(*b)) {
+        let judge = Judge::new(ways[0], &vocabulary)?;
+        let names: Vec<String> = ways.iter().map(|way| way.name()).collect();
+        let mut found = Vec::new();
         for (set, clips, altered) in filled() {
-            watch(&format!("{}: {set}", mode.name()));
-            table.rows.push(judge.row(set, clips, *altered)?);
+            watch(&format!("{}: {set}", names.join("; ")));
+            found.push(judge.rows(set, clips, *altered, ways)?.into_iter());
+        }
+        // Way by way, each in all sets.
+        for _ in ways {
+            table
+                .rows
+                .extend(found.iter_mut().filter_map(Iterator::next));
         }
     }
     for mode in FEW {

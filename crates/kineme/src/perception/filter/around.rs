@@ -47,7 +47,8 @@ impl Around {
         let d = self.directions;
         let first = state * (1 + self.count) * d + d;
         let tangent = &self.states[first..first + d];
-        step.iter().zip(tangent).map(|(x, u)| x * u).sum()
+        let step = &step[..d];
+        sum(d, |i| step[i] * tangent[i])
     }
 
     /// The squared distance of a point to a state.
@@ -60,13 +61,26 @@ impl Around {
     pub fn apart(&self, point: &[f64], place: &[f64], state: usize) -> f64 {
         let (d, size) = (self.directions, (1 + self.count) * self.directions);
         let vectors = &self.states[state * size + d..(state + 1) * size];
-        let apart = |(x, y): (&f64, &f64)| (x - y) * (x - y);
-        let mut squared: f64 = point.iter().zip(place).map(apart).sum();
+        let (point, place) = (&point[..d], &place[..d]);
+        let off = |i: usize| point[i] - place[i];
+        let mut squared = sum(d, |i| off(i) * off(i));
         for u in vectors.chunks_exact(d) {
-            let residuals = point.iter().zip(place).zip(u);
-            let along: f64 = residuals.map(|((x, y), u)| (x - y) * u).sum();
+            let along = sum(d, |i| off(i) * u[i]);
             squared -= along * along;
         }
         squared
     }
+}
+
+/// The sum of so many terms, four at a time: one sum would wait for each addition before the next.
+#[inline]
+fn sum(count: usize, term: impl Fn(usize) -> f64) -> f64 {
+    let mut lanes = [0.0; 4];
+    let whole = count - count % 4;
+    for first in (0..whole).step_by(4) {
+        for (lane, sum) in lanes.iter_mut().enumerate() {
+            *sum += term(first + lane);
+        }
+    }
+    lanes.iter().sum::<f64>() + (whole..count).map(term).sum::<f64>()
 }

@@ -1,10 +1,9 @@
 //! The two manners in which a stream may move: like the exemplars, as people do, or by the primitives themselves, as a
 //! body does that carries them out. A manner hardly ever changes.
 
-use super::chain::{Kernel, LOOSE, TIGHT};
+use super::chain::{LOOSE, TIGHT};
 use super::recogniser::Filter;
-use super::rows::Row;
-use super::track::{Mass, Network};
+use super::track::{Mass, Step};
 
 /// Chance a second that the manner changes.
 const CHANGE: f64 = 0.0001;
@@ -18,21 +17,22 @@ pub(super) struct Belief {
     pub exact: Option<Mass>,
 }
 
-/// How rows go on in each manner.
+/// How belief goes on in each manner in a certain time.
 #[derive(Debug, Clone)]
-pub(super) struct Kernels {
+pub(super) struct Steps {
     pub secs: f64,
-    alike: Vec<Kernel>,
-    exact: Vec<Kernel>,
+    alike: Step,
+    /// Nothing where nobody carries primitives out.
+    exact: Option<Step>,
 }
 
-impl Kernels {
-    pub fn of(rows: &[Row], secs: f64, both: bool) -> Self {
-        let within = |paces| rows.iter().map(|r| Kernel::of(r, secs, paces)).collect();
+impl Steps {
+    pub fn of(filter: &Filter<'_>, secs: f64, both: bool) -> Self {
+        let rows = &filter.stream.rows;
         Self {
             secs,
-            alike: within(LOOSE),
-            exact: if both { within(TIGHT) } else { Vec::new() },
+            alike: filter.network.step(rows, secs, LOOSE),
+            exact: both.then(|| filter.exact_network.step(rows, secs, TIGHT)),
         }
     }
 }
@@ -52,39 +52,36 @@ impl Belief {
         }
     }
 
-    /// Belief after the time of these kernels, before anything is seen.
-    pub fn forward(&self, filter: &Filter<'_>, kernels: &Kernels) -> Self {
-        let step = |network: &Network, own: &[Kernel], mass: &Mass| {
-            network.forward(&filter.stream.rows, own, mass, kernels.secs)
-        };
-        let alike = step(&filter.network, &kernels.alike, &self.alike);
-        match &self.exact {
-            None => Self { alike, exact: None },
-            Some(exact) => {
-                let exact = step(&filter.exact_network, &kernels.exact, exact);
-                mixed(&alike, &exact, kernels.secs)
+    /// Belief after these steps, before anything is seen.
+    pub fn forward(&self, filter: &Filter<'_>, steps: &Steps) -> Self {
+        let rows = &filter.stream.rows;
+        let alike = filter.network.forward(rows, &steps.alike, &self.alike);
+        match (&self.exact, &steps.exact) {
+            (Some(exact), Some(step)) => {
+                let exact = filter.exact_network.forward(rows, step, exact);
+                mixed(&alike, &exact, steps.secs)
             }
+            _ => Self { alike, exact: None },
         }
     }
 
-    /// What belief was worth before that time, if it is worth so much after it.
-    pub fn backward(&self, filter: &Filter<'_>, kernels: &Kernels) -> Self {
-        let step = |network: &Network, own: &[Kernel], worth: &Mass| {
-            network.backward(&filter.stream.rows, own, worth, kernels.secs)
-        };
-        match &self.exact {
-            None => Self {
-                alike: step(&filter.network, &kernels.alike, &self.alike),
-                exact: None,
-            },
-            Some(exact) => {
-                let worth = mixed(&self.alike, exact, kernels.secs);
-                let back = |e: Mass| step(&filter.exact_network, &kernels.exact, &e);
+    /// What belief was worth before these steps, if it is worth so much after them.
+    pub fn backward(&self, filter: &Filter<'_>, steps: &Steps) -> Self {
+        let rows = &filter.stream.rows;
+        let back = |worth: &Mass| filter.network.backward(rows, &steps.alike, worth);
+        match (&self.exact, &steps.exact) {
+            (Some(exact), Some(step)) => {
+                let worth = mixed(&self.alike, exact, steps.secs);
+                let exactly = |e: Mass| filter.exact_network.backward(rows, step, &e);
                 Self {
-                    alike: step(&filter.network, &kernels.alike, &worth.alike),
-                    exact: worth.exact.map(back),
+                    alike: back(&worth.alike),
+                    exact: worth.exact.map(exactly),
                 }
             }
+            _ => Self {
+                alike: back(&self.alike),
+                exact: None,
+            },
         }
     }
 

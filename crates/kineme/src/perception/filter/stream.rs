@@ -7,10 +7,10 @@ use super::emission::Fit;
 use super::exact::Exact;
 use super::features::{Feature, Recent};
 use super::going::Looks;
-use super::manner::{Belief, Kernels, Manifold, likelihood};
+use super::manner::{Belief, Manifold, Steps, likelihood};
 use super::patterns::Known;
 use super::recogniser::Filter;
-use super::rows::{FINER, Row};
+use super::rows::Row;
 use super::sight::Sight;
 use super::track::Mass;
 use crate::error::Result;
@@ -24,6 +24,9 @@ const STILL: f64 = 4.0;
 const STRANGE: f64 = 2.4;
 /// A longer time between two looks is taken for so much, seconds.
 const LONGEST_SECS: f64 = 0.25;
+/// Who may follow primitives to the millimetre is looked at so many times as often: a movement that is broken off is
+/// off the manifold within a few hundredths of a second, and an answer between looks is as old as the last.
+const OFTENER: f64 = 4.0;
 /// Looks gone back over at a time.
 const BLOCK: usize = 64;
 
@@ -35,7 +38,7 @@ pub(super) struct Stream<'a> {
     recent: Recent,
     /// What postures are compared by as long as the same numbers are unknown.
     known: Option<Arc<Known>>,
-    kernels: Option<Kernels>,
+    steps: Option<Steps>,
     /// States of a body that stands still.
     still: Vec<usize>,
     belief: Belief,
@@ -70,7 +73,7 @@ impl<'a> Stream<'a> {
             sight: Sight::new(model),
             recent: Recent::default(),
             known: None,
-            kernels: None,
+            steps: None,
             still: still(&model.rows, &filter.network.starts),
             belief: Belief::prior(filter.network.prior(&model.rows), filter.patterns.exact()),
             looks: Looks::new(&model.layout.still()),
@@ -126,12 +129,12 @@ impl<'a> Stream<'a> {
         let moment = self.sight.see(seen);
         let secs = seen.secs;
         self.recent.push(moment);
-        let finer = if self.belief.exact.is_some() {
-            FINER
+        let oftener = if self.belief.exact.is_some() {
+            OFTENER
         } else {
             1.0
         };
-        let tick = 1.0 / (self.filter.settings.clock_hz * finer);
+        let tick = 1.0 / (self.filter.settings.clock_hz * oftener);
         // A frame in time is looked at though clocks differ in their last digits.
         let due = self.looked.is_none_or(|l| secs - l >= 0.98 * tick);
         let (true, Some(now), Some(then)) = (due, self.recent.now(), self.recent.then()) else {
@@ -162,14 +165,13 @@ impl<'a> Stream<'a> {
             exact,
         } = &*known;
         all.fit(feature, &mut self.fit);
-        let rows = &self.filter.stream.rows;
         if self.looked.is_some() {
             let both = self.belief.exact.is_some();
-            let kept = self.kernels.take();
+            let kept = self.steps.take();
             let kept = kept.filter(|k| (k.secs - dt).abs() <= 1e-6);
-            let kernels = kept.unwrap_or_else(|| Kernels::of(rows, dt, both));
-            self.belief = self.belief.forward(self.filter, &kernels);
-            self.kernels = Some(kernels);
+            let steps = kept.unwrap_or_else(|| Steps::of(self.filter, dt, both));
+            self.belief = self.belief.forward(self.filter, &steps);
+            self.steps = Some(steps);
         }
         // At rest the displacements are nothing, and the posture may be any: it fits as postures usually do.
         let posture = (all.usual_cost() - displacements.usual_cost()).max(0.0);
@@ -222,7 +224,6 @@ impl<'a> Stream<'a> {
 
     /// What is believed of each look within the lag, the oldest first, in the light of those after it.
     fn smoothed(&self) -> Vec<Mass> {
-        let rows = &self.filter.stream.rows;
         let mut smoothed = Vec::with_capacity(self.lag.len());
         let mut worth: Option<Belief> = None;
         for (k, look) in self.lag.iter().enumerate().rev() {
@@ -241,16 +242,16 @@ impl<'a> Stream<'a> {
                     worth
                 }
             };
-            let kept = self.kernels.as_ref();
-            let made: Kernels;
-            let kernels = match kept.filter(|k| (k.secs - look.dt).abs() <= 1e-6) {
+            let kept = self.steps.as_ref();
+            let made: Steps;
+            let steps = match kept.filter(|k| (k.secs - look.dt).abs() <= 1e-6) {
                 Some(kept) => kept,
                 None => {
-                    made = Kernels::of(rows, look.dt, look.belief.exact.is_some());
+                    made = Steps::of(self.filter, look.dt, look.belief.exact.is_some());
                     &made
                 }
             };
-            worth = Some(seen.backward(self.filter, kernels));
+            worth = Some(seen.backward(self.filter, steps));
         }
         smoothed.reverse();
         smoothed
@@ -259,19 +260,21 @@ impl<'a> Stream<'a> {
 
 impl Listener for Stream<'_> {
     fn hear(&mut self, seen: &Observation<'_>) -> Result<Reading> {
-        let mut news = self.take(seen)?;
-        if news {
-            self.hindsight = self.smoothed();
-        }
+        let looked = self.take(seen)?;
         // The look nearest to the moment that is asked for; those before it are of no use any more.
         let from = seen.secs - self.lag_secs;
         let apart = |look: &Look| (look.secs - from).abs();
+        let mut passed = 0;
         while self.lag.len() > 1 && apart(&self.lag[1]) <= apart(&self.lag[0]) + 1e-9 {
             self.lag.pop_front();
-            self.hindsight.remove(0);
-            news = true;
+            passed += 1;
         }
-        if let (false, Some(answer)) = (news, &self.answer) {
+        if looked {
+            self.hindsight = self.smoothed();
+        } else {
+            self.hindsight.drain(..passed);
+        }
+        if let (false, 0, Some(answer)) = (looked, passed, &self.answer) {
             return Ok(answer.clone());
         }
         let pose = self.lag.front().map(|l| l.pose.as_slice());

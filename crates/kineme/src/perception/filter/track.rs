@@ -39,6 +39,18 @@ pub(super) struct Network {
     primitives: usize,
 }
 
+/// How mass goes on in a certain time.
+#[derive(Debug, Clone)]
+pub(super) struct Step {
+    /// How each row advances.
+    kernels: Vec<Kernel>,
+    /// Chances that states are left before their row ends.
+    leaving: Vec<f64>,
+    /// Chances to begin from rest or unknown movement, and to go between these.
+    begin: f64,
+    change: f64,
+}
+
 /// Probabilities of all states.
 #[derive(Debug, Clone)]
 pub(super) struct Mass {
@@ -88,10 +100,15 @@ impl Network {
         }
     }
 
-    /// Chances that states are left within `secs`.
-    fn leaving(&self, secs: f64) -> Vec<f64> {
-        let chance = |rate: &f64| 1.0 - (-rate * secs).exp();
-        self.leave.iter().map(chance).collect()
+    /// How mass goes on in so many seconds, at paces between the slowest and the fastest.
+    pub fn step(&self, rows: &[Row], secs: f64, paces: [f64; 2]) -> Step {
+        let chance = |rate: f64| 1.0 - (-rate * secs).exp();
+        Step {
+            kernels: rows.iter().map(|r| Kernel::of(r, secs, paces)).collect(),
+            leaving: self.leave.iter().map(|rate| chance(*rate)).collect(),
+            begin: chance(BEGIN),
+            change: chance(CHANGE),
+        }
     }
 
     /// What is believed before anything was seen.
@@ -112,20 +129,17 @@ impl Network {
         }
     }
 
-    /// Mass after `secs`, before anything is seen.
-    pub fn forward(&self, rows: &[Row], kernels: &[Kernel], mass: &Mass, secs: f64) -> Mass {
-        let chance = |rate: f64| 1.0 - (-rate * secs).exp();
-        let (begin, change) = (chance(BEGIN), chance(CHANGE));
-        let leaving = self.leaving(secs);
+    /// Mass after a step, before anything is seen.
+    pub fn forward(&self, rows: &[Row], step: &Step, mass: &Mass) -> Mass {
+        let (begin, change) = (step.begin, step.change);
         let n = self.primitives;
         let mut states = vec![0.0; mass.states.len()];
         let mut ended = vec![0.0; n];
         for (r, row) in rows.iter().enumerate() {
             let own = self.starts[r]..self.starts[r + 1];
             let next = &mut states[own.clone()];
-            let mut out = kernels[r].advance(row.cyclic, &mass.states[own], next);
-            let leaving = &leaving[self.starts[r]..self.starts[r + 1]];
-            for (m, leave) in next.iter_mut().zip(leaving) {
+            let mut out = step.kernels[r].advance(row.cyclic, &mass.states[own.clone()], next);
+            for (m, leave) in next.iter_mut().zip(&step.leaving[own]) {
                 out += leave * *m;
                 *m *= 1.0 - leave;
             }
@@ -152,12 +166,9 @@ impl Network {
         }
     }
 
-    /// The step backward: what each state was worth when those after `secs` are worth so much (their likelihood
-    /// included).
-    pub fn backward(&self, rows: &[Row], kernels: &[Kernel], worth: &Mass, secs: f64) -> Mass {
-        let chance = |rate: f64| 1.0 - (-rate * secs).exp();
-        let (begin, change) = (chance(BEGIN), chance(CHANGE));
-        let leaving = self.leaving(secs);
+    /// The step backward: what each state was worth when those after it are worth so much (their likelihood included).
+    pub fn backward(&self, rows: &[Row], step: &Step, worth: &Mass) -> Mass {
+        let (begin, change) = (step.begin, step.change);
         let n = self.primitives;
         let mut entered = vec![0.0; n];
         for (r, row) in rows.iter().enumerate() {
@@ -177,11 +188,11 @@ impl Network {
             let own = self.starts[r]..self.starts[r + 1];
             let end = ended[row.primitive];
             let before = &mut states[own.clone()];
-            let pairs = worth.states[own.clone()].iter().zip(&leaving[own]);
+            let pairs = worth.states[own.clone()].iter().zip(&step.leaving[own]);
             let kept: Vec<f64> = pairs
                 .map(|(w, leave)| (1.0 - leave) * w + leave * end)
                 .collect();
-            kernels[r].retreat(row.cyclic, &kept, end, before);
+            step.kernels[r].retreat(row.cyclic, &kept, end, before);
         }
         let begun = entered.iter().sum::<f64>() / n as f64;
         let from = |same: f64, other: f64| {
