@@ -12,6 +12,9 @@ const REST_SECS: f64 = 0.3;
 /// Probability that a movement that has ended begins again.
 const AGAIN: f64 = 0.1;
 
+/// How much an outline counts a second: about as much as one direction of the hands and one of the body.
+const OUTLINE_TRUST: f64 = 7.0;
+
 /// How much squared distances of the whole clip count a second, beside those of its moments: none below 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Trusts {
@@ -30,6 +33,8 @@ pub(super) struct Evidence {
     pub routes: Option<Vec<f64>>,
     /// Squared distance a second of each row's shape; `None` where rows have none.
     pub shapes: Option<Vec<f64>>,
+    /// Squared distance of each row's outline, in deviations; `None` where rows have none or not all was seen.
+    pub outlines: Option<Vec<f64>>,
     /// Log-likelihood of movement of no known kind.
     pub broad: f64,
     /// Seconds of the clip.
@@ -42,10 +47,24 @@ impl Evidence {
         self.secs.max(0.1)
     }
 
-    /// Log-likelihood of each row by its postures from moment to moment, its route and its shape.
+    /// What a stream knows of it: moments alone.
+    pub fn of_moments(&self) -> Self {
+        Self {
+            routes: None,
+            shapes: None,
+            outlines: None,
+            ..self.clone()
+        }
+    }
+
+    /// Log-likelihood of each row by its postures from moment to moment, its route, its shape and its outline.
     pub fn weighed(&self, trusts: Trusts) -> Vec<f64> {
         let mut rows = self.rows.clone();
-        for (trust, distances) in [(trusts.route, &self.routes), (trusts.shape, &self.shapes)] {
+        for (trust, distances) in [
+            (trusts.route, &self.routes),
+            (trusts.shape, &self.shapes),
+            (OUTLINE_TRUST, &self.outlines),
+        ] {
             for (log, distance) in rows.iter_mut().zip(distances.iter().flatten()) {
                 *log -= 0.5 * trust * self.lasts() * distance;
             }
@@ -137,6 +156,7 @@ pub(super) fn evidence<'a>(
         rows: logs,
         routes: None,
         shapes: None,
+        outlines: None,
         broad,
         secs,
     }

@@ -22,7 +22,7 @@ const SWAY_M: f64 = 0.003;
 /// Where postures jitter by so much, what the manifold itself tells counts half; the rest is what the wide measure tells.
 const JITTER_M: f64 = 0.0016;
 /// How much a squared distance counts, a second (see [`super::emission::Part`]).
-const TRUST_PER_SEC: f64 = 50.0;
+const TRUST_PER_SEC: f64 = 36.0;
 /// Movement that is not on the manifold is anywhere within so many deviations of the rows.
 const BROAD: f64 = 20.0;
 /// Directions in which the rows vary by less, in deviations, are all alike.

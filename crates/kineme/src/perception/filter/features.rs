@@ -105,8 +105,17 @@ impl Layout {
         still
     }
 
+    /// The numbers of a posture that tell the hands' tips, and the landmarks of these roles.
+    pub fn numbers_of(&self, roles: &[Role]) -> Vec<usize> {
+        let tips = self.tips.len();
+        let landmarks = landmarks_of(&self.body).into_iter().enumerate();
+        let own = landmarks.filter(|(_, (role, _))| roles.contains(role));
+        let places = (0..tips).chain(own.map(|(landmark, _)| tips + landmark));
+        places.flat_map(|p| 3 * p..3 * p + 3).collect()
+    }
+
     /// Numbers of a posture.
-    fn posture_dims(&self) -> usize {
+    pub fn posture_dims(&self) -> usize {
         3 * (self.tips.len() + self.joints.len())
     }
 

@@ -13,6 +13,7 @@ mod logistic;
 mod manner;
 mod model;
 mod noise;
+mod outline;
 mod patterns;
 mod place;
 mod reading;

@@ -6,6 +6,7 @@ use super::features::{Feature, Moment};
 use super::learned::{Learned, NAME, classes, scores, unit};
 use super::learning::learn;
 use super::model::Model;
+use super::outline::Outlines;
 use super::patterns::Patterns;
 use super::route::Routes;
 use super::shape::Shapes;
@@ -41,8 +42,8 @@ pub struct FilterSettings {
     pub directions: usize,
     /// Rows a primitive at most: exemplars, and courses between them where parameters have a meaning.
     pub rows: usize,
-    /// Moments a second that are looked at; frames between are answered from the last. Four times as many where
-    /// parameters have a meaning, so that bodies can follow the primitives themselves.
+    /// Moments a second that are looked at; frames between are answered from the last. Twice as many where parameters
+    /// have a meaning, so that bodies can follow the primitives themselves.
     pub clock_hz: f64,
     /// Seconds by which an answer may lag, that what followed may speak for it: 0 answers at once.
     pub lag_secs: f64,
@@ -76,6 +77,8 @@ pub struct Filter<'v> {
     routes: Option<Routes>,
     /// How they go as a whole.
     shapes: Option<Shapes>,
+    /// How much their parts move when, and where.
+    outlines: Option<Outlines>,
     pub(super) patterns: Patterns,
     pub(super) network: Network,
     /// The same where movements are carried out exactly.
@@ -116,6 +119,7 @@ impl<'v> Filter<'v> {
                 &clips.layout,
                 clips.posture_parts(),
             )?,
+            outlines: Outlines::new(vocabulary, &clips.rows, &clips.layout, settings.clock_hz)?,
             patterns: Patterns::new(&stream)?,
             network: Network::new(vocabulary, &stream.rows, false, stream.lasting.is_some()),
             exact_network: Network::new(vocabulary, &stream.rows, true, false),
@@ -153,6 +157,8 @@ impl<'v> Filter<'v> {
         let postures: Vec<f64> = moments.iter().flat_map(|m| m.posture.clone()).collect();
         let features = model.of_clip(moments);
         let unknown = lasting(&features);
+        let posture_is_unknown = model.layout.still().into_iter().zip(&unknown);
+        let complete = !posture_is_unknown.into_iter().any(|(still, u)| still && *u);
         let marginal: Emission;
         let emission = match unknown.contains(&true) {
             true => {
@@ -169,6 +175,10 @@ impl<'v> Filter<'v> {
             let still = model.layout.still().into_iter().zip(unknown);
             let unknown: Vec<bool> = still.filter(|(s, _)| *s).map(|(_, u)| u).collect();
             evidence.shapes = Some(shapes.distances(&postures, &unknown)?);
+        }
+        // What was not seen leaves no outline to compare.
+        if let Some(outlines) = self.outlines.as_ref().filter(|_| complete) {
+            evidence.outlines = Some(outlines.distances(&postures, model.layout.posture_dims()));
         }
         Ok(evidence)
     }

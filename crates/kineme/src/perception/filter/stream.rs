@@ -10,7 +10,7 @@ use super::going::Looks;
 use super::manner::{Belief, Manifold, Steps, likelihood};
 use super::patterns::Known;
 use super::recogniser::Filter;
-use super::rows::Row;
+use super::rows::{FINER, Row};
 use super::sight::Sight;
 use super::track::Mass;
 use crate::error::Result;
@@ -24,9 +24,6 @@ const STILL: f64 = 4.0;
 const STRANGE: f64 = 2.4;
 /// A longer time between two looks is taken for so much, seconds.
 const LONGEST_SECS: f64 = 0.25;
-/// Who may follow primitives to the millimetre is looked at so many times as often: a movement that is broken off is
-/// off the manifold within a few hundredths of a second, and an answer between looks is as old as the last.
-const OFTENER: f64 = 4.0;
 /// Looks gone back over at a time.
 const BLOCK: usize = 64;
 
@@ -129,12 +126,12 @@ impl<'a> Stream<'a> {
         let moment = self.sight.see(seen);
         let secs = seen.secs;
         self.recent.push(moment);
-        let oftener = if self.belief.exact.is_some() {
-            OFTENER
+        let finer = if self.belief.exact.is_some() {
+            FINER
         } else {
             1.0
         };
-        let tick = 1.0 / (self.filter.settings.clock_hz * oftener);
+        let tick = 1.0 / (self.filter.settings.clock_hz * finer);
         // A frame in time is looked at though clocks differ in their last digits.
         let due = self.looked.is_none_or(|l| secs - l >= 0.98 * tick);
         let (true, Some(now), Some(then)) = (due, self.recent.now(), self.recent.then()) else {
