@@ -201,7 +201,11 @@ mod tests {
         // Half of the time up, half of it down, a metre each: the root mean square of a sine's slope, a quarter long.
         let wanted = (std::f64::consts::PI / 2f64.sqrt() + STILL_M).ln();
         // Of a stroke so short an eighth is taken for jitter.
-        assert!((moves(0) - wanted).abs() < 0.15, "{} for {wanted}", moves(0));
+        assert!(
+            (moves(0) - wanted).abs() < 0.15,
+            "{} for {wanted}",
+            moves(0)
+        );
         for part in 1..PARTS {
             assert!(moves(part) < STILL_M.ln() + 0.2, "{part}: {}", moves(part));
             // Half a metre up in a quarter is an eighth in the mean.
