@@ -208,7 +208,10 @@ impl Exact {
         for (x, v) in z.iter().zip(self.variances.iter()) {
             broad += x * x / (v + beyond) + (v + beyond).ln();
         }
-        let straight = going.and_then(|g| g.surprise.as_deref()).map(|surprise| {
+        // People move evenly whatever they do: where some of the primitives are theirs, going on evenly tells nothing.
+        let surprise = going.and_then(|g| g.surprise.as_deref());
+        let surprise = surprise.filter(|_| self.log_dets.iter().all(Option::is_some));
+        let straight = surprise.map(|surprise| {
             let off = scaled(surprise);
             let within = (&self.basis * &off).norm_squared();
             let beside = (off.norm_squared() - within).max(0.0);
