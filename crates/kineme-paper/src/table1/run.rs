@@ -111,11 +111,21 @@ impl<'v> Judge<'v> {
         ways.iter().map(one).collect()
     }
 
-    pub(super) fn tallies(&self, clips: &[&Clip], altered: Altered) -> Result<Vec<Tally>> {
-        let ways = [self.mode];
-        let one = |clip: &&Clip| self.tally(&altered.of(clip, self.vocabulary)?, &ways);
+    /// The tallies of all clips by each of the ways that share this judge's answers.
+    fn tallies_by(
+        &self,
+        clips: &[&Clip],
+        altered: Altered,
+        ways: &[Mode],
+    ) -> Result<Vec<Vec<Tally>>> {
+        let one = |clip: &&Clip| self.tally(&altered.of(clip, self.vocabulary)?, ways);
         let all: Vec<Vec<Tally>> = clips.par_iter().map(one).collect::<Result<_>>()?;
-        Ok(all.concat())
+        let of = |way: usize| all.iter().map(|own| own[way].clone()).collect();
+        Ok((0..ways.len()).map(of).collect())
+    }
+
+    pub(super) fn tallies(&self, clips: &[&Clip], altered: Altered) -> Result<Vec<Tally>> {
+        Ok(self.tallies_by(clips, altered, &[self.mode])?.concat())
     }
 
     /// The rows of ways that share this judge's answers.
@@ -126,13 +136,9 @@ impl<'v> Judge<'v> {
         altered: Altered,
         ways: &[Mode],
     ) -> Result<Vec<Row>> {
-        let one = |clip: &&Clip| self.tally(&altered.of(clip, self.vocabulary)?, ways);
-        let all: Vec<Vec<Tally>> = clips.par_iter().map(one).collect::<Result<_>>()?;
-        let of = |(k, way): (usize, &Mode)| {
-            let own: Vec<Tally> = all.iter().map(|tallies| tallies[k].clone()).collect();
-            Row::of(set, *way, altered, &own)
-        };
-        ways.iter().enumerate().map(of).collect()
+        let tallies = self.tallies_by(clips, altered, ways)?;
+        let of = |(way, own): (&Mode, &Vec<Tally>)| Row::of(set, *way, altered, own);
+        ways.iter().zip(&tallies).map(of).collect()
     }
 
     pub(super) fn row(&self, set: &str, clips: &[&Clip], altered: Altered) -> Result<Row> {

@@ -22,7 +22,7 @@ const SWAY_M: f64 = 0.003;
 /// Where postures jitter by so much, what the manifold itself tells counts half; the rest is what the wide measure tells.
 const JITTER_M: f64 = 0.0016;
 /// How much a squared distance counts, a second (see [`super::emission::Part`]).
-const TRUST_PER_SEC: f64 = 36.0;
+const TRUST_PER_SEC: f64 = 50.0;
 /// Movement that is not on the manifold is anywhere within so many deviations of the rows.
 const BROAD: f64 = 20.0;
 /// Directions in which the rows vary by less, in deviations, are all alike.
@@ -38,15 +38,15 @@ const WORTH: f64 = 0.5;
 const BACK: f64 = 0.3;
 /// Neither does who goes on by less than this share of the pace, where that is so many deviations from one look to the
 /// next.
-const ONWARD: f64 = 0.1;
-const TOLD: f64 = 0.1;
+const ONWARD: f64 = 0.5;
+const TOLD: f64 = 0.05;
 /// A movement that is broken off leaves the manifold faster than it is off it. Who goes on as he does is somewhere else
 /// after so many seconds; what that is farther from where the row goes on than he is now counts by this share.
 const AHEAD_SECS: f64 = 0.08;
 const LEAVING: f64 = 0.5;
 /// Movement that is not on the manifold goes straight on from one look to the next but for so much, deviations: who
 /// leaves the manifold is sooner somewhere else than a broad Gaussian would have it.
-const STRAIGHT: f64 = 12.0;
+const STRAIGHT: f64 = 16.0;
 
 /// What may vary around the moments of the rows: vectors in the features' numbers, each as long as one deviation.
 #[derive(Debug, Clone)]

@@ -12,9 +12,9 @@ const FEWEST: usize = 12;
 const MOST: usize = 40;
 /// The same for whole recordings of cycles, which last longer.
 const MOST_WHOLE: usize = 64;
-/// A manifold that bodies follow to the millimetre is sampled, and looked at, so many times as finely: in a thirtieth of
-/// a second a hand leaves the tangent by more.
-pub(super) const FINER: f64 = 2.0;
+/// A manifold that bodies follow to the millimetre is sampled so many times as finely: in a thirtieth of a second a hand
+/// leaves the tangent by more.
+const FINER: f64 = 3.0;
 /// Seconds of standing still before and after a movement that is no cycle: as long as displacements look back.
 const STILL_SECS: f64 = super::features::WINDOW_SECS;
 /// Phases at which a course's pace is read to know when it is where.

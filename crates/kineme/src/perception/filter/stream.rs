@@ -10,7 +10,7 @@ use super::going::Looks;
 use super::manner::{Belief, Manifold, Steps, likelihood};
 use super::patterns::Known;
 use super::recogniser::Filter;
-use super::rows::{FINER, Row};
+use super::rows::Row;
 use super::sight::Sight;
 use super::track::Mass;
 use crate::error::Result;
@@ -22,6 +22,9 @@ const STILL: f64 = 4.0;
 /// Among people, so many times what a moment costs that fits as well as any does is taken off unknown movement a second:
 /// beginning a movement has its price at once, and evidence that counts little would be late to pay it.
 const STRANGE: f64 = 2.4;
+/// Bodies that carry primitives out are looked at so many times as often: they begin and end at a moment, which people
+/// do not.
+const OFTENER: f64 = 4.0;
 /// A longer time between two looks is taken for so much, seconds.
 const LONGEST_SECS: f64 = 0.25;
 /// Looks gone back over at a time.
@@ -126,12 +129,11 @@ impl<'a> Stream<'a> {
         let moment = self.sight.see(seen);
         let secs = seen.secs;
         self.recent.push(moment);
-        let finer = if self.belief.exact.is_some() {
-            FINER
-        } else {
-            1.0
+        let oftener = match self.belief.exact {
+            Some(_) => OFTENER,
+            None => 1.0,
         };
-        let tick = 1.0 / (self.filter.settings.clock_hz * finer);
+        let tick = 1.0 / (self.filter.settings.clock_hz * oftener);
         // A frame in time is looked at though clocks differ in their last digits.
         let due = self.looked.is_none_or(|l| secs - l >= 0.98 * tick);
         let (true, Some(now), Some(then)) = (due, self.recent.now(), self.recent.then()) else {
@@ -194,9 +196,11 @@ impl<'a> Stream<'a> {
                     log => told * (log + self.fit.broad) + (1.0 - told) * alike,
                 };
             }
-            // Who stands where movements begin or end stands there exactly, and does not move.
-            let logs = self.still.iter().map(|&s| dt * self.exact[s]);
-            let standing = log_mean_exp(logs) - dt * exact.moving(feature, jitter);
+            // Who stands where movements begin or end stands there exactly, and does not move. It is one of these places
+            // all the time, not another at every look: the best fit counts, and not their mean.
+            let fits = self.still.iter().map(|&s| self.exact[s]);
+            let best = fits.fold(f64::NEG_INFINITY, f64::max);
+            let standing = dt * (best - exact.moving(feature, jitter));
             let none = none + dt * (told * straight).max(0.0);
             exactly = Some(Manifold {
                 states: &self.exact,
@@ -282,16 +286,6 @@ impl Listener for Stream<'_> {
         self.answer = Some(reading.clone());
         Ok(reading)
     }
-}
-
-/// The logarithm of the mean of what these are the logarithms of; minus infinity of none.
-fn log_mean_exp(logs: impl Iterator<Item = f64> + Clone) -> f64 {
-    let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
-    if most == f64::NEG_INFINITY {
-        return most;
-    }
-    let (sum, count) = logs.fold((0.0, 0.0), |(sum, n), l| (sum + (l - most).exp(), n + 1.0));
-    most + (sum / count).ln()
 }
 
 /// States of a body that stands still before a movement or after it.
