@@ -143,7 +143,7 @@ pub fn show(seed: u64, watch: &mut dyn FnMut(Act)) -> Result<Show> {
     watch(Act::Reading);
     let seen = Observations::complete(by_ares.done.clone());
     let whole = || -> Result<Vec<Reading>> {
-        let filter = Filter::new(&movements, &FilterSettings::default())?;
+        let filter = Filter::new(&movements, &seldom())?;
         Ok(readings(&filter, &seen)?)
     };
     let of_parts = || -> Result<Vec<PartRead>> {
@@ -182,12 +182,21 @@ fn parts_of(plan: &Plan) -> Vec<Vec<String>> {
     parts
 }
 
+/// Half as many looks as usual: thirteen primitives are looked for time and again, and nobody acts on the answers.
+fn seldom() -> FilterSettings {
+    let usual = FilterSettings::default();
+    FilterSettings {
+        clock_hz: 0.5 * usual.clock_hz,
+        ..usual
+    }
+}
+
 /// What is recognised of a part of the body.
 fn read(vocabulary: &Vocabulary, names: Vec<String>, seen: &Observations) -> Result<PartRead> {
     // Of what is learned by leaving exemplars out a stream needs but one number, for which the usual one serves; to learn
     // it takes longer than all that is asked here.
     let restriction = Restriction::new(vocabulary, &names)?;
-    let filter = Filter::new(restriction.vocabulary(), &FilterSettings::default())?;
+    let filter = Filter::new(restriction.vocabulary(), &seldom())?;
     let readings = readings(&restriction.recogniser(Box::new(filter)), seen)?;
     Ok(PartRead {
         names,

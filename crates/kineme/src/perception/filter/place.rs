@@ -44,13 +44,10 @@ impl Spread {
             return None;
         }
         let mode = most as f64 / 32.0;
+        let cyclic = rows.iter().any(|r| r.primitive == primitive && r.cyclic);
         let apart = |row: &Row, k: usize| {
             let d = row.phases[k] - mode;
-            if row.cyclic || rows_cycle(rows, primitive) {
-                d - d.round()
-            } else {
-                d
-            }
+            if cyclic { d - d.round() } else { d }
         };
         let dims = rows
             .iter()
@@ -80,10 +77,6 @@ impl Spread {
             parameters: told.collect(),
         })
     }
-}
-
-fn rows_cycle(rows: &[Row], primitive: usize) -> bool {
-    rows.iter().any(|r| r.primitive == primitive && r.cyclic)
 }
 
 /// The place of a posture (coordinates that were not seen are no numbers). Where parameters have a meaning, belief and

@@ -42,8 +42,8 @@ pub struct FilterSettings {
     pub directions: usize,
     /// Rows a primitive at most: exemplars, and courses between them where parameters have a meaning.
     pub rows: usize,
-    /// Moments a second that are looked at; frames between are answered from the last. Twice as many where parameters
-    /// have a meaning, so that bodies can follow the primitives themselves.
+    /// Moments a second that are looked at; frames between are answered from the last. Four times as many where
+    /// parameters have a meaning, so that bodies can follow the primitives themselves.
     pub clock_hz: f64,
     /// Seconds by which an answer may lag, that what followed may speak for it: 0 answers at once.
     pub lag_secs: f64,
