@@ -1,8 +1,9 @@
 // Bundles the viewer into dist/viewer.js and dist/viewer.css, which kineme-report carries.
-import { readFile, writeFile } from "node:fs/promises";
+import { mkdir, readFile, writeFile } from "node:fs/promises";
+import { dirname } from "node:path";
 import { build } from "esbuild";
 
-await build({
+const { outputFiles } = await build({
   entryPoints: { viewer: "src/main.ts" },
   outdir: "dist",
   bundle: true,
@@ -12,10 +13,16 @@ await build({
   legalComments: "inline",
   charset: "ascii",
   logLevel: "info",
+  write: false,
 });
 
-// The script stands inside a page: nothing in it may end its element.
-const file = "dist/viewer.js";
-const script = await readFile(file, "utf8");
-const safe = script.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
-if (safe !== script) await writeFile(file, safe);
+for (const { path, text } of outputFiles) {
+  // The script stands inside a page: nothing in it may end its element.
+  const script = path.endsWith(".js");
+  const safe = script ? text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--") : text;
+  // A file that is written anew is a minute of compiling, be it the same or not.
+  const before = await readFile(path, "utf8").catch(() => undefined);
+  if (safe === before) continue;
+  await mkdir(dirname(path), { recursive: true });
+  await writeFile(path, safe);
+}
