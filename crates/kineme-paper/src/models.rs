@@ -4,7 +4,7 @@ use kineme::alignment::{Registration, Trim, cycle, period, resting_ends};
 use kineme::motion::landmark_dims;
 use kineme::primitive::{
     Exemplar, Fit, Interpolation, Mismatched, Modelling, ParameterSource, ParameterSpace,
-    Primitive, Provenance, Used,
+    Primitive, Used,
 };
 use kineme::{Motion, interpolation::Method};
 
@@ -43,26 +43,15 @@ pub fn folds(set: &LabelledSet) -> Vec<Fold> {
     (0..set.classes.len()).flat_map(of_class).collect()
 }
 
-/// A whole clip as an exemplar.
-pub fn exemplar(motion: &Motion) -> Exemplar {
-    Exemplar {
-        provenance: Provenance {
-            motion: motion.name().into(),
-            start_secs: 0.0,
-            end_secs: motion.duration_secs(),
-            blake3: None,
-        },
-        motion: motion.clone(),
-        adverbs: None,
-    }
-}
-
 /// The primitive of a fold's other clips. Those that are of another structure are left out, as nobody labelled structure.
 ///
 /// # Errors
 /// As [`Primitive::learn`].
 pub fn learn(set: &LabelledSet, fold: &Fold, modelling: &Modelling) -> Result<Primitive> {
-    let exemplars = fold.others.iter().map(|&i| exemplar(&set.motions[i]));
+    let exemplars = fold
+        .others
+        .iter()
+        .map(|&i| Exemplar::whole(set.motions[i].clone(), None));
     let modelling = Modelling {
         mismatched: Mismatched::LeaveOut,
         ..modelling.clone()
@@ -289,7 +278,8 @@ impl<'a> Truth<'a> {
             method: Method::Shepard { power: 2.0 },
             ..primitive.fitted().clone()
         };
-        let alone = Primitive::from_fit("left out", vec![exemplar(self.motion)], fit, None)?;
+        let exemplar = Exemplar::whole(self.motion.clone(), None);
+        let alone = Primitive::from_fit("left out", vec![exemplar], fit, None)?;
         let truth = registered(&alone).swap_remove(0);
         Ok(guess.against(&Postures::of_poses(primitive.body(), truth)?))
     }

@@ -11,7 +11,6 @@ use kineme::{Role, Root};
 use kineme_formats::script;
 use nalgebra::Vector3;
 
-use crate::models::exemplar;
 use crate::sets::Result;
 
 const WAVES: &str = include_str!("../../../choreography/horizontal-waving.toml");
@@ -56,10 +55,8 @@ pub fn waves(back: Return) -> Result<Vec<Exemplar>> {
         .into_iter()
         .map(|wave| {
             let motion = perform("wave", &wave.keys, &body, RATE_HZ)?;
-            Ok(Exemplar {
-                adverbs: Some(wave.parameters.into_values().collect()),
-                ..exemplar(&motion)
-            })
+            let adverbs = wave.parameters.into_values().collect();
+            Ok(Exemplar::whole(motion, Some(adverbs)))
         })
         .collect()
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, LazyLock};
 use kineme::choreography::{Key, perform};
 use kineme::perception::{Frame, FrameSettings, Paper, PaperSettings};
 use kineme::primitive::{Observation, Observations, Posterior, Recogniser, readings};
-use kineme::{Exemplar, Modelling, Motion, Primitive, Provenance, Result, Role, Root, Skeleton};
+use kineme::{Exemplar, Modelling, Motion, Primitive, Result, Role, Root, Skeleton};
 use kineme::{Transitions, Vocabulary, adonis};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -27,16 +27,7 @@ fn primitive(name: &str, adverbs: bool, keys: impl Fn(f64, f64) -> Vec<Key>) -> 
     let places = (0..9).map(|i| (f64::from(i / 3) / 2.0, f64::from(i % 3) / 2.0));
     let exemplars = places.map(|(a, b)| {
         let motion = perform(name, &keys(a, b), body, 120.0).expect("keys");
-        Exemplar {
-            provenance: Provenance {
-                motion: name.into(),
-                start_secs: 0.0,
-                end_secs: motion.duration_secs(),
-                blake3: None,
-            },
-            motion,
-            adverbs: adverbs.then(|| vec![a, b]),
-        }
+        Exemplar::whole(motion, adverbs.then(|| vec![a, b]))
     });
     Primitive::learn(name, exemplars.collect(), &Modelling::default()).expect("a primitive")
 }

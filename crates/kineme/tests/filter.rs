@@ -10,9 +10,7 @@ use std::sync::Arc;
 use kineme::choreography::{Key, perform};
 use kineme::perception::{Filter, FilterSettings};
 use kineme::primitive::{Observations, Posterior, readings};
-use kineme::{
-    Exemplar, Modelling, Motion, Primitive, Provenance, Role, Root, Skeleton, Vocabulary,
-};
+use kineme::{Exemplar, Modelling, Motion, Primitive, Role, Root, Skeleton, Vocabulary};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use vocabulary::{of_adonis, vocabulary_of};
@@ -79,6 +77,44 @@ fn who_stands_where_a_movement_begins_has_not_begun_it() {
     }
 }
 
+/// The same motion with even noise on every joint, of this standard deviation.
+fn jittering(seen: &Motion, deg: f64, random: &mut Pcg64) -> Motion {
+    let most = 3f64.sqrt() * deg.to_radians();
+    let mut noisy = |v: &f64| v + most * random.random_range(-1.0..1.0);
+    let poses = seen.poses().iter().map(&mut noisy).collect();
+    motion(seen.skeleton(), seen.rate_hz(), poses)
+}
+
+#[test]
+fn what_jitters_is_found_and_who_stands_and_jitters_is_seldom_taken_for_moving() {
+    let vocabulary = vocabulary_of(&of_adonis()[..3]);
+    let mut random = Pcg64::seed_from_u64(6);
+    // Degrees on every joint, and shares of the moving frames that are found and of the standing ones that are taken for
+    // movement.
+    for (deg, least, most) in [(0.0, 0.95, 0.01), (1.0, 0.85, 0.2), (2.0, 0.85, 0.25)] {
+        let (mut found, mut moving, mut alarmed, mut standing) = (0, 0, 0, 0);
+        for (k, primitive) in vocabulary.primitives().iter().enumerate() {
+            let seen = carried_out(primitive, &[0.4], 120.0);
+            let seen = jittering(&seen, deg, &mut random);
+            for (f, p) in posteriors(&vocabulary, &seen).iter().enumerate() {
+                // The first looks know no displacement, and what ends is heard a little late.
+                let last = seen.frames() - 120;
+                if (120..last).contains(&f) {
+                    moving += 1;
+                    found += usize::from(p.primitives[k] > 0.5);
+                } else if (24..120).contains(&f) || f >= last + 24 {
+                    standing += 1;
+                    alarmed += usize::from(p.primitives.iter().any(|p| *p > 0.5));
+                }
+            }
+        }
+        let found = found as f64 / moving as f64;
+        let alarmed = alarmed as f64 / standing as f64;
+        assert!(found >= least, "{deg} degrees: found {found}");
+        assert!(alarmed <= most, "{deg} degrees: alarmed {alarmed}");
+    }
+}
+
 /// Somebody raises the left arm to the side and lets it sink, each in a way of his own.
 fn somebody(body: &Arc<Skeleton>, random: &mut Pcg64) -> Motion {
     let mut own = |usual: f64, by: f64| usual + by * random.random_range(-1.0..1.0);
@@ -108,19 +144,7 @@ fn people_beside_written_primitives_are_heard_though_they_move_evenly() {
     let written = &of_adonis()[..2];
     let body = Arc::clone(written[0].body());
     let mut random = Pcg64::seed_from_u64(5);
-    let exemplars = (0..8).map(|_| {
-        let motion = somebody(&body, &mut random);
-        Exemplar {
-            provenance: Provenance {
-                motion: motion.name().into(),
-                start_secs: 0.0,
-                end_secs: motion.duration_secs(),
-                blake3: None,
-            },
-            motion,
-            adverbs: None,
-        }
-    });
+    let exemplars = (0..8).map(|_| Exemplar::whole(somebody(&body, &mut random), None));
     let people = Primitive::learn("raising", exemplars.collect(), &Modelling::default());
     let people = people.expect("a primitive");
     let mixed = vocabulary_of(&[&[people], written].concat());

@@ -8,22 +8,9 @@ use kineme::choreography::{Key, perform};
 use kineme::primitive::{FlowSettings, FlowState, Flowfield, Memory};
 use kineme::skeleton::JointKind;
 use kineme::{Error, ares};
-use kineme::{Exemplar, Modelling, Motion, Primitive, Provenance, Role, Root, Skeleton, adonis};
+use kineme::{Exemplar, Modelling, Motion, Primitive, Role, Root, Skeleton, adonis};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
-
-fn exemplar(motion: Motion, adverbs: Option<Vec<f64>>) -> Exemplar {
-    Exemplar {
-        provenance: Provenance {
-            motion: motion.name().into(),
-            start_secs: 0.0,
-            end_secs: motion.duration_secs(),
-            blake3: None,
-        },
-        motion,
-        adverbs,
-    }
-}
 
 fn key(time: f64, arm: [f64; 3], elbow: f64, chest: f64) -> Key {
     Key {
@@ -42,7 +29,10 @@ fn grid(name: &str, body: &Arc<Skeleton>, keys: impl Fn(f64, f64) -> Vec<Key>) -
         for s in 0..3 {
             let (height, side) = (f64::from(h) / 2.0, f64::from(s) / 2.0);
             let motion = perform(&format!("{name}-{h}{s}"), &keys(height, side), body, 120.0);
-            exemplars.push(exemplar(motion.expect("keys"), Some(vec![height, side])));
+            exemplars.push(Exemplar::whole(
+                motion.expect("keys"),
+                Some(vec![height, side]),
+            ));
         }
     }
     Primitive::learn(name, exemplars, &Modelling::default()).expect("a primitive")
@@ -106,7 +96,7 @@ fn circling(body: &Arc<Skeleton>) -> Primitive {
         }
         let roots = vec![Root::ORIGIN; frames + 1];
         let motion = Motion::new(format!("circle-{i}"), Arc::clone(body), rate, poses, roots);
-        exemplar(motion.expect("a motion"), Some(vec![size]))
+        Exemplar::whole(motion.expect("a motion"), Some(vec![size]))
     });
     let modelling = Modelling {
         cyclic: Some(true),

@@ -5,9 +5,7 @@ use std::sync::{Arc, LazyLock};
 
 use kineme::choreography::{Key, perform};
 use kineme::primitive::{Interpolation, Parameterisation};
-use kineme::{
-    Exemplar, Modelling, Primitive, Provenance, Role, Skeleton, Transitions, adonis, ares,
-};
+use kineme::{Exemplar, Modelling, Primitive, Role, Skeleton, Transitions, adonis, ares};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
@@ -32,16 +30,7 @@ fn reach_keys(height: f64, side: f64, secs: f64) -> Vec<Key> {
 
 fn exemplar(body: &Arc<Skeleton>, name: &str, keys: &[Key], adverbs: Option<Vec<f64>>) -> Exemplar {
     let motion = perform(name, keys, body, 120.0).expect("keys");
-    Exemplar {
-        provenance: Provenance {
-            motion: name.into(),
-            start_secs: 0.0,
-            end_secs: motion.duration_secs(),
-            blake3: None,
-        },
-        motion,
-        adverbs,
-    }
+    Exemplar::whole(motion, adverbs)
 }
 
 fn grid(body: &Arc<Skeleton>, adverbs: bool) -> Vec<Exemplar> {
@@ -366,16 +355,7 @@ fn marching(
         });
     }
     let motion = kineme::Motion::new(name, Arc::clone(body), rate, poses, roots).expect("a motion");
-    Exemplar {
-        provenance: Provenance {
-            motion: name.into(),
-            start_secs: 0.0,
-            end_secs: motion.duration_secs(),
-            blake3: None,
-        },
-        motion,
-        adverbs: None,
-    }
+    Exemplar::whole(motion, None)
 }
 
 #[test]

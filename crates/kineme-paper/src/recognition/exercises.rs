@@ -10,7 +10,6 @@ use kineme::{Motion, Skeleton};
 
 use super::known::{Known, Method, learned};
 use super::summary::{Aim, Line};
-use crate::models::exemplar;
 use crate::sets::{IndexRow, LabelledSet, Result, index, load};
 use crate::table::annotations;
 
@@ -117,7 +116,7 @@ impl Exercises {
         let exemplars = |class: usize| -> Vec<Exemplar> {
             let of = |i: &usize| self.pieces.labels[*i] == class;
             let placed = |i: usize| {
-                let mut piece = exemplar(&self.pieces.motions[i]);
+                let mut piece = Exemplar::whole(self.pieces.motions[i].clone(), None);
                 piece.provenance.start_secs = self.begin_secs[i];
                 piece.provenance.end_secs += self.begin_secs[i];
                 piece

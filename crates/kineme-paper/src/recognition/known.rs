@@ -1,6 +1,5 @@
 //! What is learned of a split, and the recognisers over it.
 
-use kineme::Motion;
 use kineme::evaluation::{
     Constant, Features, NearestDtw, NearestDtwSettings, NearestPosture, NearestPostureSettings,
 };
@@ -11,7 +10,6 @@ use kineme::primitive::{
 };
 use rayon::prelude::*;
 
-use crate::models::exemplar;
 use crate::sets::{LabelledSet, Result};
 
 /// A recogniser of the tables.
@@ -107,8 +105,8 @@ pub struct Known {
 pub fn primitives(set: &LabelledSet, clips: &[usize]) -> Result<Vec<Option<Primitive>>> {
     let exemplars = |class: usize| -> Vec<Exemplar> {
         let of = |i: &&usize| set.labels[**i] == class;
-        let motion = |i: &usize| -> &Motion { &set.motions[*i] };
-        clips.iter().filter(of).map(motion).map(exemplar).collect()
+        let whole = |i: &usize| Exemplar::whole(set.motions[*i].clone(), None);
+        clips.iter().filter(of).map(whole).collect()
     };
     learned(&set.classes, &exemplars)
 }

@@ -8,7 +8,7 @@ use super::perform::perform;
 use super::script::{Script, ScriptExemplar};
 use crate::error::{Error, Result};
 use crate::motion::Motion;
-use crate::primitive::{Exemplar, Modelling, Primitive, Provenance, Transitions, Vocabulary};
+use crate::primitive::{Exemplar, Modelling, Primitive, Transitions, Vocabulary};
 use crate::skeleton::Skeleton;
 
 /// Frames a second at which scripts are performed: what optical motion capture records.
@@ -92,16 +92,10 @@ impl Script {
                 PERFORMED_HZ,
             )?;
             let adverbs: Vec<f64> = e.parameters.values().copied().collect();
-            Ok(Exemplar {
-                provenance: Provenance {
-                    motion: motion.name().into(),
-                    start_secs: 0.0,
-                    end_secs: motion.duration_secs(),
-                    blake3: blake3.map(String::from),
-                },
-                motion,
-                adverbs: (!adverbs.is_empty()).then_some(adverbs),
-            })
+            let adverbs = (!adverbs.is_empty()).then_some(adverbs);
+            let mut exemplar = Exemplar::whole(motion, adverbs);
+            exemplar.provenance.blake3 = blake3.map(String::from);
+            Ok(exemplar)
         });
         let exemplars = exemplars.collect::<Result<Vec<_>>>()?;
         let modelling = Modelling {

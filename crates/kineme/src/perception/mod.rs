@@ -11,6 +11,7 @@ mod parts;
 mod restriction;
 mod rows;
 mod spans;
+mod temperature;
 
 pub use alarm::{Alarm, AlarmSettings};
 pub use calibration::calibrated;

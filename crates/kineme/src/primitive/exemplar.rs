@@ -27,6 +27,21 @@ pub struct Exemplar {
 }
 
 impl Exemplar {
+    /// A motion from its first to its last frame, named as it is; `adverbs` as in [`Exemplar::adverbs`].
+    pub fn whole(motion: Motion, adverbs: Option<Vec<f64>>) -> Self {
+        let provenance = Provenance {
+            motion: motion.name().into(),
+            start_secs: 0.0,
+            end_secs: motion.duration_secs(),
+            blake3: None,
+        };
+        Self {
+            motion,
+            provenance,
+            adverbs,
+        }
+    }
+
     /// How messages name it: the recording and, of a part of one, its seconds.
     pub fn label(&self) -> String {
         let from = &self.provenance;

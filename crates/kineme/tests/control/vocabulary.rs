@@ -6,8 +6,8 @@ use std::sync::{Arc, OnceLock};
 
 use kineme::choreography::{Key, perform};
 use kineme::{
-    Course, Exemplar, Modelling, Motion, Primitive, Provenance, Role, Root, Skeleton, Transitions,
-    Vocabulary, adonis, ares,
+    Course, Exemplar, Modelling, Motion, Primitive, Role, Root, Skeleton, Transitions, Vocabulary,
+    adonis, ares,
 };
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -68,21 +68,11 @@ pub fn wave(height: f64) -> Vec<Key> {
     ]
 }
 
-fn exemplar(motion: Motion, adverb: f64) -> Exemplar {
-    Exemplar {
-        provenance: Provenance {
-            motion: motion.name().into(),
-            start_secs: 0.0,
-            end_secs: motion.duration_secs(),
-            blake3: None,
-        },
-        motion,
-        adverbs: Some(vec![adverb]),
-    }
-}
-
 fn choreographed(body: &Arc<Skeleton>, name: &str, keys: fn(f64) -> Vec<Key>) -> Primitive {
-    let one = |h: f64| exemplar(perform(name, &keys(h), body, 120.0).expect("keys"), h);
+    let one = |h: f64| {
+        let motion = perform(name, &keys(h), body, 120.0).expect("keys");
+        Exemplar::whole(motion, Some(vec![h]))
+    };
     Primitive::learn(
         name,
         [0.0, 0.5, 1.0].map(one).to_vec(),
@@ -124,10 +114,8 @@ fn walk(body: &Arc<Skeleton>) -> Primitive {
                 yaw,
             });
         }
-        exemplar(
-            Motion::new("walk", Arc::clone(body), rate, poses, roots).expect("a motion"),
-            swing,
-        )
+        let motion = Motion::new("walk", Arc::clone(body), rate, poses, roots);
+        Exemplar::whole(motion.expect("a motion"), Some(vec![swing]))
     };
     let modelling = Modelling {
         cyclic: Some(true),

@@ -6,8 +6,7 @@ use std::sync::{Arc, OnceLock};
 use kineme::choreography::{Key, perform};
 use kineme::perception::encoding::{EffectorPaths, EncodingSettings};
 use kineme::{
-    Exemplar, Modelling, Motion, Primitive, Provenance, Role, Skeleton, Transitions, Vocabulary,
-    adonis,
+    Exemplar, Modelling, Motion, Primitive, Role, Skeleton, Transitions, Vocabulary, adonis,
 };
 use nalgebra::Vector3;
 
@@ -73,19 +72,8 @@ pub fn vocabulary_of(names: &[&str]) -> Vocabulary {
     let primitives: Vec<Primitive> = names
         .iter()
         .map(|name| {
-            let exemplars = [0.0, 0.3, 0.7, 1.0].map(|height| {
-                let motion = made(name, height);
-                Exemplar {
-                    provenance: Provenance {
-                        motion: format!("{name} {height}"),
-                        start_secs: 0.0,
-                        end_secs: motion.duration_secs(),
-                        blake3: None,
-                    },
-                    adverbs: Some(vec![height]),
-                    motion,
-                }
-            });
+            let exemplars = [0.0, 0.3, 0.7, 1.0]
+                .map(|height| Exemplar::whole(made(name, height), Some(vec![height])));
             Primitive::learn(name, exemplars.into(), &Modelling::default()).expect("a primitive")
         })
         .collect();

@@ -1,6 +1,7 @@
 //! How sure the choice among primitives is: a temperature that is believed in, not known.
 
 use super::chains::shares;
+use crate::perception::temperature::LogNormal;
 
 /// The temperature of real vocabularies, units.
 const USUAL: f64 = 0.03;
@@ -11,9 +12,6 @@ const SPREAD: f64 = 0.7;
 const INDEPENDENT: f64 = 0.1;
 /// Temperatures that are tried: twenty to a power of ten, from 1/1000 unit on.
 const TRIED: u32 = 60;
-/// Steps, in deviations, at which the belief is summed up, to either side of its middle.
-const STEPS: i32 = 6;
-const STEP: f64 = 0.5;
 /// Less probable than this counts as so probable.
 const LEAST: f64 = 1e-12;
 
@@ -37,43 +35,30 @@ impl Confidence {
         if alone.is_empty() {
             return None;
         }
-        let log_posterior = |t: f64| {
-            let log = |&(costs, truth): &(&[f64], usize)| shares(costs, t)[truth].max(LEAST).ln();
-            let off = (t / USUAL).ln() / SPREAD;
-            INDEPENDENT * alone.iter().map(log).sum::<f64>() - 0.5 * off * off
-        };
         let tried = (0..=TRIED).map(|k| 10f64.powf(f64::from(k) / 20.0 - 3.0));
-        let all: Vec<(f64, f64)> = tried.map(|t| (t.ln(), log_posterior(t))).collect();
-        let most = all.iter().map(|a| a.1).fold(f64::NEG_INFINITY, f64::max);
-        let sum = |of: &dyn Fn(f64) -> f64| -> f64 {
-            all.iter().map(|(log, p)| (p - most).exp() * of(*log)).sum()
+        let prior = LogNormal {
+            mean: USUAL,
+            spread: SPREAD,
         };
-        let count = sum(&|_| 1.0);
-        let mean = sum(&|log| log) / count;
-        let variance = sum(&|log| (log - mean) * (log - mean)) / count;
+        let believed = prior.after(tried, |t| {
+            let log = |&(costs, truth): &(&[f64], usize)| shares(costs, t)[truth].max(LEAST).ln();
+            INDEPENDENT * alone.iter().map(log).sum::<f64>()
+        });
         Some(Self {
-            temperature: mean.exp(),
-            spread: variance.sqrt(),
+            temperature: believed.mean,
+            spread: believed.spread,
         })
     }
 
     /// How probable each primitive is, of what each costs, if the clip is one of them: the mean over what the temperature
     /// may be. The order of the primitives is that of their costs.
     pub(super) fn shares(&self, costs: &[f64]) -> Vec<f64> {
-        let steps = if self.spread > 0.0 { STEPS } else { 0 };
-        let mut mean = vec![0.0; costs.len()];
-        let mut all = 0.0;
-        for z in (-steps..=steps).map(|k| STEP * f64::from(k)) {
-            let density = (-0.5 * z * z).exp();
-            // Whatever a file says, a share stays a number.
-            let temperature = self.temperature * (self.spread * z).exp();
-            let temperature = temperature.clamp(1e-6, 1e6);
-            for (mean, share) in mean.iter_mut().zip(shares(costs, temperature)) {
-                *mean += density * share;
-            }
-            all += density;
-        }
-        mean.into_iter().map(|m| m / all).collect()
+        let believed = LogNormal {
+            mean: self.temperature,
+            spread: self.spread,
+        };
+        // Whatever a file says, a share stays a number.
+        believed.mean_of(costs.len(), |t| shares(costs, t.clamp(1e-6, 1e6)))
     }
 }
 

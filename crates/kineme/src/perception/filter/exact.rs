@@ -142,7 +142,10 @@ impl Exact {
     /// What the displacements of a feature cost a second if the body stands still, jittering by this variance.
     pub fn moving(&self, feature: &Feature, jitter: f64) -> f64 {
         let squares = self.displaced.iter().map(|&i| feature.values[i].powi(2));
-        0.5 * TRUST_PER_SEC * squares.sum::<f64>() / (SWAY_M * SWAY_M + 2.0 * jitter)
+        let shaken = 2.0 * jitter;
+        // Of two postures that jitter, the difference is so much though nothing moves.
+        let moved = squares.sum::<f64>() - self.displaced.len() as f64 * shaken;
+        0.5 * TRUST_PER_SEC * moved.max(0.0) / (SWAY_M * SWAY_M + shaken)
     }
 
     /// How much of what is told counts where postures jitter by this variance, a share.

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use super::evidence::{Evidence, Trusts};
 use super::recogniser::Filter;
 use crate::math::statistics::median;
+use crate::perception::temperature::LogNormal;
 use crate::primitive::Calibration;
 
 /// The name under which a vocabulary keeps it.
@@ -15,9 +16,6 @@ const EDITION: f64 = 6.0;
 pub(super) const SCORES: usize = 5;
 /// The temperature of real vocabularies.
 pub(super) const USUAL_TEMPERATURE: f64 = 1.0;
-/// Steps, in deviations, at which the belief about the temperature is summed up, to either side of its middle.
-const STEPS: i32 = 6;
-const STEP: f64 = 0.5;
 /// What a clip costs a second at the least, however exactly it was met.
 const LEAST_COST: f64 = 5.0;
 
@@ -127,28 +125,19 @@ impl Learned {
         self.temperature * unit(classes, evidence.lasts())
     }
 
-    /// How probable each primitive is if the clip is one of them: the mean over what the temperature may be. Of wrong
-    /// answers that one temperature would be sure of, some belief stays with the truth.
+    /// How probable each primitive is if the clip is one of them: the mean over what the temperature may be.
     pub fn shares(&self, classes: &[f64], unit: f64) -> Vec<f64> {
         let most = classes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let mut shares = vec![0.0; classes.len()];
-        let mut all = 0.0;
-        let steps = if self.spread > 0.0 { STEPS } else { 0 };
-        for z in (-steps..=steps).map(|k| STEP * f64::from(k)) {
-            let temperature = unit * self.temperature * (self.spread * z).exp();
-            let weights = classes.iter().map(|c| ((c - most) / temperature).exp());
-            let weights: Vec<f64> = weights.collect();
-            let density = (-0.5 * z * z).exp();
-            let each = density / weights.iter().sum::<f64>();
-            for (share, w) in shares.iter_mut().zip(weights) {
-                *share += each * w;
-            }
-            all += density;
-        }
-        for share in &mut shares {
-            *share /= all;
-        }
-        shares
+        let believed = LogNormal {
+            mean: self.temperature,
+            spread: self.spread,
+        };
+        believed.mean_of(classes.len(), |temperature| {
+            let weight = |c: &f64| ((c - most) / (unit * temperature)).exp();
+            let weights: Vec<f64> = classes.iter().map(weight).collect();
+            let sum: f64 = weights.iter().sum();
+            weights.into_iter().map(|w| w / sum).collect()
+        })
     }
 
     /// The same odds as far as they can be trusted: nearer to even the less the exemplars say of such scores (MacKay 1992,

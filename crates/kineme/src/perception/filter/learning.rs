@@ -10,6 +10,7 @@ use super::rows::manifold;
 use super::temperature::{belief, chance_lead, temperature};
 use crate::error::Result;
 use crate::math::statistics::{median, quantile};
+use crate::perception::temperature::LogNormal;
 use crate::primitive::{Observations, Vocabulary};
 
 /// At most so many exemplars are left out, and at most so many moments of rows are compared for it.
@@ -72,10 +73,13 @@ pub(super) fn learn(filter: &Filter<'_>, kept: &[Option<f64>]) -> Result<Learned
     // Whoever gave a grid of parameters is the one who moves: there is no next person to be unsure of.
     let people = vocabulary.primitives().iter().any(|p| !manifold(p));
     let belief = belief(&trials).filter(|_| people);
-    let (temperature, spread) = belief.unwrap_or((temperature, 0.0));
+    let believed = belief.unwrap_or(LogNormal {
+        mean: temperature,
+        spread: 0.0,
+    });
     let mut learned = Learned {
-        temperature,
-        spread,
+        temperature: believed.mean,
+        spread: believed.spread,
         trusts,
         limits: limits(vocabulary, &trials, &evidences, kept, &usual),
         ..usual

@@ -55,14 +55,13 @@ impl Belief {
     /// Belief after these steps, before anything is seen.
     pub fn forward(&self, filter: &Filter<'_>, steps: &Steps) -> Self {
         let rows = &filter.stream.rows;
-        let alike = filter.network.forward(rows, &steps.alike, &self.alike);
-        match (&self.exact, &steps.exact) {
-            (Some(exact), Some(step)) => {
-                let exact = filter.exact_network.forward(rows, step, exact);
-                mixed(&alike, &exact, steps.secs)
-            }
-            _ => Self { alike, exact: None },
+        let mut alike = filter.network.forward(rows, &steps.alike, &self.alike);
+        let mut exact = None;
+        if let (Some(own), Some(step)) = (&self.exact, &steps.exact) {
+            let own = exact.insert(filter.exact_network.forward(rows, step, own));
+            alike.exchange(own, changed(steps.secs));
         }
+        Self { alike, exact }
     }
 
     /// What belief was worth before these steps, if it is worth so much after them.
@@ -71,11 +70,12 @@ impl Belief {
         let back = |worth: &Mass| filter.network.backward(rows, &steps.alike, worth);
         match (&self.exact, &steps.exact) {
             (Some(exact), Some(step)) => {
-                let worth = mixed(&self.alike, exact, steps.secs);
-                let exactly = |e: Mass| filter.exact_network.backward(rows, step, &e);
+                let (mut alike, mut exact) = (self.alike.clone(), exact.clone());
+                // The same as forward: either may become the other.
+                alike.exchange(&mut exact, changed(steps.secs));
                 Self {
-                    alike: back(&worth.alike),
-                    exact: worth.exact.map(exactly),
+                    alike: back(&alike),
+                    exact: Some(filter.exact_network.backward(rows, step, &exact)),
                 }
             }
             _ => Self {
@@ -109,13 +109,9 @@ impl Belief {
     }
 }
 
-/// Either manner after a time in which it may have changed; the same forward and backward.
-fn mixed(alike: &Mass, exact: &Mass, secs: f64) -> Belief {
-    let change = 1.0 - (-CHANGE * secs).exp();
-    Belief {
-        alike: alike.times(1.0 - change).plus(&exact.times(change)),
-        exact: Some(exact.times(1.0 - change).plus(&alike.times(change))),
-    }
+/// The chance that the manner has changed after a time.
+fn changed(secs: f64) -> f64 {
+    1.0 - (-CHANGE * secs).exp()
 }
 
 /// Logarithms of likelihoods in the exact manner: of the states, a second; of standing still where movements begin or

@@ -22,6 +22,7 @@ mod route;
 mod rows;
 mod shape;
 mod sight;
+mod steady;
 mod stream;
 mod tangents;
 mod temperature;

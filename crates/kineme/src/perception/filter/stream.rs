@@ -12,6 +12,7 @@ use super::patterns::Known;
 use super::recogniser::Filter;
 use super::rows::Row;
 use super::sight::Sight;
+use super::steady::Steady;
 use super::track::Mass;
 use crate::error::Result;
 use crate::perception::parts::Guard;
@@ -35,6 +36,7 @@ pub(super) struct Stream<'a> {
     filter: &'a Filter<'a>,
     guard: Guard,
     sight: Sight<'a>,
+    steady: Steady,
     recent: Recent,
     /// What postures are compared by as long as the same numbers are unknown.
     known: Option<Arc<Known>>,
@@ -71,12 +73,13 @@ impl<'a> Stream<'a> {
         Self {
             guard: Guard::default(),
             sight: Sight::new(model),
+            steady: Steady::default(),
             recent: Recent::default(),
             known: None,
             steps: None,
             still: still(&model.rows, &filter.network.starts),
             belief: Belief::prior(filter.network.prior(&model.rows), filter.patterns.exact()),
-            looks: Looks::new(&model.layout.still()),
+            looks: Looks::default(),
             looked: None,
             fit: Fit::default(),
             exact: Vec::new(),
@@ -126,7 +129,11 @@ impl<'a> Stream<'a> {
     /// Takes an observation; whether it was looked at.
     fn take(&mut self, seen: &Observation<'_>) -> Result<bool> {
         self.guard.check(self.filter.vocabulary.body(), seen)?;
-        let moment = self.sight.see(seen);
+        let mut moment = self.sight.see(seen);
+        if self.belief.exact.is_some() {
+            // People differ by more than sensors jitter.
+            moment = self.steady.take(moment);
+        }
         let secs = seen.secs;
         self.recent.push(moment);
         let oftener = match self.belief.exact {
@@ -185,7 +192,7 @@ impl<'a> Stream<'a> {
         if let Some(exact) = exact {
             let wide = (self.fit.states.as_slice(), all.usual_cost());
             let going = self.looks.take(feature, dt);
-            let jitter = self.looks.jitter();
+            let jitter = self.steady.jitter();
             let straight = exact.fit(feature, (going.as_ref(), jitter), wide, &mut self.exact);
             let told = Exact::told(jitter);
             for (log, alike) in self.exact.iter_mut().zip(&self.fit.states) {

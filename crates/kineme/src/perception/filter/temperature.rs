@@ -3,6 +3,7 @@
 use super::learned::USUAL_TEMPERATURE;
 use super::learning::{INDEPENDENT, Trial};
 use crate::math::statistics::median;
+use crate::perception::temperature::LogNormal;
 
 /// What it costs, in logarithms of probability, to fit the temperature e times off the usual one: where one person gave
 /// all exemplars, nothing that is left out is hard, and nothing is learned of others.
@@ -16,32 +17,25 @@ fn candidates() -> impl Iterator<Item = f64> {
     (0..=60).map(|k| 10f64.powf(-1.5 + 3.0 * f64::from(k) / 60.0))
 }
 
-/// What is believed of the next person's temperature (its geometric mean, the deviation of its natural logarithm) after
-/// the exemplars that were left out alone: Bayes' rule on a logarithmic grid, with a log-normal prior. `None` without
-/// known trials or rivals.
+/// What is believed of the next person's temperature after the exemplars that were left out alone. `None` without known
+/// trials or rivals.
 ///
 /// Trials with half of the exemplars left out are harder than the next person is, who meets all of them.
-pub(super) fn belief(trials: &[Trial]) -> Option<(f64, f64)> {
+pub(super) fn belief(trials: &[Trial]) -> Option<LogNormal> {
     let alone = trials.iter().filter(|t| t.alone && t.classes.len() > 1);
     let known: Vec<(&Trial, usize)> = alone.filter_map(|t| Some((t, t.truth?))).collect();
     if known.is_empty() {
         return None;
     }
-    let log_posterior = |t: f64| {
+    let prior = LogNormal {
+        mean: USUAL_TEMPERATURE,
+        spread: SPREAD,
+    };
+    Some(prior.after(candidates(), |t| {
         let of =
             |(trial, truth): &(&Trial, usize)| loss(&trial.classes, Some(*truth), t * trial.unit);
-        let off = (t / USUAL_TEMPERATURE).ln() / SPREAD;
-        -INDEPENDENT * known.iter().map(of).sum::<f64>() - 0.5 * off * off
-    };
-    let all: Vec<(f64, f64)> = candidates().map(|t| (t.ln(), log_posterior(t))).collect();
-    let most = all.iter().map(|a| a.1).fold(f64::NEG_INFINITY, f64::max);
-    let sum = |of: &dyn Fn(f64) -> f64| -> f64 {
-        all.iter().map(|(log, p)| (p - most).exp() * of(*log)).sum()
-    };
-    let count = sum(&|_| 1.0);
-    let mean = sum(&|log| log) / count;
-    let variance = sum(&|log| (log - mean) * (log - mean)) / count;
-    Some((mean.exp(), variance.sqrt()))
+        -INDEPENDENT * known.iter().map(of).sum::<f64>()
+    }))
 }
 
 /// The temperature at which the truth is most probable, and what it then costs; `None` without known trials or rivals.
@@ -112,13 +106,10 @@ mod tests {
         };
         assert_eq!(belief(&[unknown]), None, "nothing known was left out");
         let sure: Vec<Trial> = (0..50).map(|_| trial(1e4)).collect();
-        let (temperature, spread) = belief(&sure).expect("trials");
-        assert!(
-            (temperature - USUAL_TEMPERATURE).abs() < 0.01,
-            "{temperature}"
-        );
+        let found = belief(&sure).expect("trials");
+        assert!((found.mean - USUAL_TEMPERATURE).abs() < 0.01, "{found:?}");
         // The grid ends nearly five deviations away on either side.
-        assert!((spread - SPREAD).abs() < 0.01, "{spread}");
+        assert!((found.spread - SPREAD).abs() < 0.01, "{found:?}");
     }
 
     #[test]
@@ -129,13 +120,13 @@ mod tests {
             belief(&trials).expect("trials")
         };
         let (right, mixed, many) = (of(90, 0), of(80, 10), of(800, 100));
-        assert!(right.0 < USUAL_TEMPERATURE && USUAL_TEMPERATURE < mixed.0);
+        assert!(right.mean < USUAL_TEMPERATURE && USUAL_TEMPERATURE < mixed.mean);
         assert!(
-            mixed.1 < SPREAD && many.1 < 0.5 * mixed.1,
+            mixed.spread < SPREAD && many.spread < 0.5 * mixed.spread,
             "{mixed:?} {many:?}"
         );
         // Odds of eight to one where the lead is 6 nats ask for a temperature of 6 / ln 8.
         let wanted = 6.0 / 8f64.ln();
-        assert!((many.0 / wanted).ln().abs() < 0.1, "{many:?}, {wanted}");
+        assert!((many.mean / wanted).ln().abs() < 0.1, "{many:?}, {wanted}");
     }
 }

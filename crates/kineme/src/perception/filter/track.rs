@@ -24,6 +24,8 @@ const ENTRY_EXACT: f64 = 0.03;
 const ANYWHERE: f64 = 0.15;
 /// Before anything was seen: rest, unknown, and all primitives alike.
 const PRIOR: [f64; 3] = [0.3, 0.2, 0.5];
+/// The logarithm of likelihoods, against the greatest, below which they are nothing.
+const LEAST_LOG: f64 = -230.0;
 
 /// How mass goes from row to row.
 #[derive(Debug, Clone)]
@@ -209,10 +211,12 @@ impl Network {
 impl Mass {
     /// Likelihoods from their logarithms, up to the factor `exp(-most)`: those of the states times `factor`.
     pub fn likelihood(logs: &[f64], factor: f64, rest: f64, none: f64, most: f64) -> Self {
+        // Most states are far off: what is less than that is nothing, and need not be computed.
+        let exp = |log: f64| if log > LEAST_LOG { log.exp() } else { 0.0 };
         Self {
-            states: logs.iter().map(|l| (factor * l - most).exp()).collect(),
-            rest: (rest - most).exp(),
-            none: (none - most).exp(),
+            states: logs.iter().map(|l| exp(factor * l - most)).collect(),
+            rest: exp(rest - most),
+            none: exp(none - most),
         }
     }
 
@@ -223,6 +227,21 @@ impl Mass {
             rest: factor * self.rest,
             none: factor * self.none,
         }
+    }
+
+    /// Gives a share of each to the other, and takes as much of the other.
+    pub fn exchange(&mut self, other: &mut Self, share: f64) {
+        let mix = |a: &mut f64, b: &mut f64| {
+            (*a, *b) = (
+                (1.0 - share) * *a + share * *b,
+                (1.0 - share) * *b + share * *a,
+            );
+        };
+        for (a, b) in self.states.iter_mut().zip(&mut other.states) {
+            mix(a, b);
+        }
+        mix(&mut self.rest, &mut other.rest);
+        mix(&mut self.none, &mut other.none);
     }
 
     /// The sum of two.
