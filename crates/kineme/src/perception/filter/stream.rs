@@ -130,8 +130,8 @@ impl<'a> Stream<'a> {
     fn take(&mut self, seen: &Observation<'_>) -> Result<bool> {
         self.guard.check(self.filter.vocabulary.body(), seen)?;
         let mut moment = self.sight.see(seen);
+        // Among people alone jitter is not asked: they differ by more than that.
         if self.belief.exact.is_some() {
-            // People differ by more than sensors jitter.
             moment = self.steady.take(moment);
         }
         let secs = seen.secs;
