@@ -59,7 +59,7 @@ fn shown(found: &Demo) -> String {
         let body = performance.done.skeleton();
         let how = match show.physics {
             true => format!(
-                "in physics, within {:.2} degrees of what it was told",
+                "in physics, within {:.2} degrees of what it was told (root mean square)",
                 performance.tracking.rms_rad.to_degrees()
             ),
             false => "without physics".into(),

@@ -16,7 +16,7 @@ use crate::failure::{Failure, complain, print};
 use crate::json::line;
 use crate::outputs::{existing, mirrored, refuse_existing, unwritten};
 use crate::source::{Source, print_warnings};
-use crate::vocabularies::read;
+use crate::vocabularies::to_recognise;
 
 /// A motion, as `--json` tells it.
 #[derive(Serialize)]
@@ -42,7 +42,7 @@ struct ToldSpan {
 }
 
 pub fn run(args: &EncodeArgs, global: &Global) -> Result<u8, Failure> {
-    let vocabulary = read(&args.vocabulary)?;
+    let vocabulary = to_recognise(&args.vocabulary)?;
     let settings = settings(args, &vocabulary)?;
     let source = Source::open(&args.inputs, &args.read)?;
     let entries: Vec<&Entry> = source.inputs.entries.iter().collect();

@@ -28,7 +28,8 @@ pub fn refuse_existing<'a>(
 ) -> Result<(), Failure> {
     let mut probed = BTreeSet::new();
     for path in paths {
-        if path.symlink_metadata().is_ok() && !global.force && !path.is_dir() {
+        let taken = path.symlink_metadata().is_ok() && !output::is_channel(path);
+        if taken && !global.force && !path.is_dir() {
             let message = format!("{} exists already", path.display());
             return Err(Failure::usage(message).hint("--force overwrites it"));
         }

@@ -107,6 +107,15 @@ impl Source {
     pub fn open<P: AsRef<Path>>(paths: &[P], args: &ReadArgs) -> Result<Self, Failure> {
         let profile = args.profile.as_deref().map(profile).transpose()?;
         let inputs = resolve(paths, args, None)?;
+        // What is not there is told before any work.
+        let mut lost = inputs.entries.iter().filter_map(Entry::lost);
+        if let (false, Some(why)) = (args.keep_going, lost.next()) {
+            let failure = Failure::from(why.clone());
+            return Err(match inputs.entries.len() {
+                1 => failure,
+                _ => failure.or_hint("--keep-going skips what cannot be read"),
+            });
+        }
         print_assumed(&inputs);
         if inputs.ignored > 0 {
             complain(&match inputs.ignored {
@@ -251,7 +260,10 @@ impl Source {
         }
         if !done.unobserved.is_empty() {
             let roles: Vec<&str> = done.unobserved.iter().map(|r| r.name()).collect();
-            warnings.push(format!("not observed, stays neutral: {}", roles.join(", ")));
+            warnings.push(format!(
+                "not transferred, stays neutral: {}",
+                roles.join(", ")
+            ));
         }
         if done.filled > 0.0 {
             warnings.push(format!(

@@ -41,6 +41,30 @@ pub fn read(path: &Path) -> Result<Vocabulary, Failure> {
     Ok(vocabulary::read(&shown, &bytes)?)
 }
 
+/// The vocabulary in a file, by which movement is to be recognised: no primitive is called what an answer is called.
+pub fn to_recognise(path: &Path) -> Result<Vocabulary, Failure> {
+    let vocabulary = read(path)?;
+    check_names(&vocabulary).map_err(|(name, failure)| {
+        failure.hint(format!(
+            "`kineme edit {} -o OUT --rename {name}=NAME` gives it another",
+            path.display()
+        ))
+    })?;
+    Ok(vocabulary)
+}
+
+/// The first primitive whose name an answer bears, and what to say of it.
+fn check_names(vocabulary: &Vocabulary) -> Result<(), (String, Failure)> {
+    let mut names = vocabulary.primitives().iter().map(|p| p.name());
+    match names.find(|name| ["rest", "none"].contains(name)) {
+        None => Ok(()),
+        Some(name) => {
+            let message = format!("the primitive `{name}` bears the name of an answer");
+            Err((name.to_owned(), Failure::failed(message)))
+        }
+    }
+}
+
 /// The primitive of this name; an unknown one is the command line's fault.
 pub fn primitive<'a>(vocabulary: &'a Vocabulary, name: &str) -> Result<&'a Primitive, Failure> {
     let found = vocabulary.primitive(name);
@@ -85,6 +109,10 @@ pub fn calibrated(
     vocabulary: Vocabulary,
     before: Option<&Vocabulary>,
 ) -> Result<Vocabulary, Failure> {
+    check_names(&vocabulary).map_err(|(_, failure)| {
+        failure
+            .hint("recognisers answer `rest` and `none` where no primitive is: choose another name")
+    })?;
     let spinner = progress::spinner();
     spinner.set_message("calibrating recognition");
     let calibrated = kineme::perception::calibrated(vocabulary, before);

@@ -6,10 +6,11 @@ use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::sync::mpsc;
+use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
-use common::{done, kineme, scripts, with_input};
+use common::{done, kineme, scripts, vocabulary, with_input};
+use kineme::Vocabulary;
 use serde_json::Value;
 
 const METHODS: [&str; 2] = ["filter", "frame"];
@@ -422,7 +423,37 @@ fn what_cannot_be_read_or_asked_for_has_its_exit_code() {
     );
     assert!(run.out.contains("out.csv  punch-out"), "{}", run.out);
     done(at, "classify p.kineme adonis.csv");
-    done(at, "edit p.kineme -o r.kineme --rename punch-out=rest");
+    // A name that answers bear is given to no primitive, and refused where somebody gave it all the same.
+    let run = kineme(
+        at,
+        &[
+            "edit",
+            "p.kineme",
+            "-o",
+            "r.kineme",
+            "--rename",
+            "punch-out=rest",
+        ],
+    );
+    assert!(
+        run.code == 1 && run.err.contains("`rest` bears the name of an answer"),
+        "{}",
+        run.err
+    );
+    assert!(!at.join("r.kineme").exists());
+    let known = vocabulary(at, "p.kineme");
+    let named = known.primitives().iter().map(|p| match p.name() {
+        "punch-out" => p.clone().renamed("rest"),
+        _ => p.clone(),
+    });
+    let named = Vocabulary::new(
+        Arc::clone(known.body()),
+        named.collect(),
+        Vec::new(),
+        known.transitions().clone(),
+    );
+    let bytes = kineme_formats::vocabulary::write(&named.expect("a vocabulary"), "r.kineme");
+    fs::write(at.join("r.kineme"), bytes.expect("bytes")).expect("a file");
     let run = kineme(at, &["classify", "r.kineme", "out.csv"]);
     assert!(
         run.code == 1 && run.err.contains("--rename rest="),

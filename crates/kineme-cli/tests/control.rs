@@ -86,6 +86,24 @@ fn what_is_watched_is_answered_from_a_file_and_from_a_stream() {
 }
 
 #[test]
+fn what_was_done_until_a_stream_broke_off_is_written() {
+    let folder = vocabularies();
+    let at = folder.path();
+    done(at, "synthesize punching.kineme punch-out -o out.csv");
+    fs::write(at.join("spar.toml"), SPAR).expect("a plan");
+    let rows = fs::read_to_string(at.join("out.csv")).expect("a table");
+    let mut rows: Vec<&str> = rows.lines().take(61).collect();
+    rows.push("0.6,1,2\n");
+    let line = "control punching.kineme spar.toml --kinematic --watch - -o part.bvh";
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let run = with_input(at, &words, rows.join("\n").as_bytes());
+    assert!(run.code == 3 && run.err.contains("-:62:"), "{}", run.err);
+    let part = json(at, "info part.bvh --json");
+    let secs = part[0]["duration"].as_f64().or(part["duration"].as_f64());
+    assert!(secs.is_some_and(|s| (0.3..0.7).contains(&s)), "{part}");
+}
+
+#[test]
 fn what_a_plan_may_not_ask_for_is_refused_with_its_line_before_anything_moves() {
     let folder = vocabularies();
     let at = folder.path();

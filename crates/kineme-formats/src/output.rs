@@ -16,7 +16,8 @@ pub enum Existing {
 }
 
 /// Writes a file through a temporary one beside it, renamed when complete: nobody ever reads half of it, and a
-/// failure leaves what was there. Parent folders are made.
+/// failure leaves what was there. Parent folders are made. A link stays one: what it points to is written. What is no
+/// file, a pipe or a device, is written into, complete or not.
 ///
 /// # Errors
 /// When the file exists and is to be kept, when the disk refuses, or whatever `content` returns.
@@ -36,6 +37,12 @@ pub fn write(
             "a new name, or leave to overwrite it",
         )
     };
+    if is_channel(path) {
+        let opened = std::fs::OpenOptions::new().write(true).open(path);
+        let mut out = BufWriter::new(opened.map_err(failed)?);
+        content(&mut out)?;
+        return out.flush().map_err(failed);
+    }
     // Asked before the work, and once more by the system when the name is taken.
     if existing == Existing::Keep && path.symlink_metadata().is_ok() {
         return Err(refused());
@@ -43,6 +50,11 @@ pub fn write(
     if path.is_dir() {
         return Err(wrong("a folder".into(), "the name of a file"));
     }
+    let real = match path.is_symlink() {
+        true => Some(std::fs::canonicalize(path).map_err(failed)?),
+        false => None,
+    };
+    let path = real.as_deref().unwrap_or(path);
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -73,6 +85,11 @@ pub fn write(
     Ok(())
 }
 
+/// Whether something is there that holds nothing which could be lost: neither file nor folder, but a pipe or a device.
+pub fn is_channel(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir())
+}
+
 /// Whether a file could be written here, asked before the work that it is to hold. Nothing is left behind.
 ///
 /// # Errors
@@ -83,6 +100,9 @@ pub fn probe(path: &Path) -> Result<()> {
     };
     if path.is_dir() {
         return Err(wrong("a folder".into(), "the name of a file"));
+    }
+    if is_channel(path) {
+        return Ok(());
     }
     let there = path
         .ancestors()

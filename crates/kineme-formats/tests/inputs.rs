@@ -269,6 +269,31 @@ fn output_is_complete_or_absent() {
 }
 
 #[test]
+#[cfg(unix)]
+fn links_stay_links_and_devices_devices() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("real"), "old").expect("a file");
+    symlink("real", at("link")).expect("a link");
+    output::write_bytes(&at("link"), Existing::Keep, b"new").expect_err("it is there");
+    output::write_bytes(&at("link"), Existing::Replace, b"new").expect("force");
+    assert!(at("link").is_symlink());
+    assert_eq!(fs::read_to_string(at("real")).expect("the file"), "new");
+    symlink("nowhere", at("dangling")).expect("a link");
+    output::write_bytes(&at("dangling"), Existing::Replace, b"new").expect_err("no target");
+    // What is reached by a link of our own is at no risk, should it be replaced.
+    symlink("/dev/null", at("null")).expect("a link");
+    for existing in [Existing::Keep, Existing::Replace] {
+        output::write_bytes(&at("null"), existing, b"gone").expect("a device takes all");
+        assert!(at("null").is_symlink());
+    }
+    let device = fs::metadata("/dev/null").expect("a device").file_type();
+    assert!(device.is_char_device());
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 4);
+}
+
+#[test]
 fn a_motion_is_read_with_the_hash_of_its_file() {
     let folder = corpus();
     let path = folder.path().join("set.zip/set/z.bvh");

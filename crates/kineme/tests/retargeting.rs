@@ -239,7 +239,7 @@ fn sources_without_legs_or_hands_still_move_the_rest() {
         observed,
     )
     .expect("valid");
-    let profile = kineme::retargeting::Profile::named("mixamo").expect("a profile");
+    let mut profile = kineme::retargeting::Profile::named("mixamo").expect("a profile");
     let found = retarget(&part, &body(), Some(&profile)).expect("a motion");
     for role in [Role::RightHand, Role::LeftLowerLeg, Role::LeftFoot] {
         assert!(found.unobserved.contains(&role), "{}", role.name());
@@ -255,6 +255,13 @@ fn sources_without_legs_or_hands_still_move_the_rest() {
     let ratio = (found.motion.root(100).position - found.motion.root(0).position).norm()
         / (wanted.root(100).position - wanted.root(0).position).norm();
     assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
+    // A profile that misses a joint says which, and what it calls it.
+    let wrong = vec!["LeftUpLog".to_owned()];
+    profile.roles.insert(Role::LeftUpperLeg, wrong);
+    let why = retarget(&part, &body(), Some(&profile)).expect_err("no thigh");
+    for said in ["`mixamo`", "`LeftUpLog`", "left_upper_leg"] {
+        assert!(why.to_string().contains(said), "{why}");
+    }
 }
 
 #[test]

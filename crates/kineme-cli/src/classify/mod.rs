@@ -13,7 +13,7 @@ use crate::failure::{Failure, complain, print};
 use crate::observed::observe;
 use crate::recognisers::classifier;
 use crate::source::{Source, print_warnings};
-use crate::vocabularies::read;
+use crate::vocabularies::to_recognise;
 use told::{MOTION_COLUMNS, Teller};
 
 /// What came of a motion.
@@ -39,8 +39,11 @@ pub fn run(args: &ClassifyArgs, global: &Global) -> Result<u8, Failure> {
             "stdin cannot be both the vocabulary and the stream",
         ));
     }
-    let vocabulary = read(&args.vocabulary)?;
-    check_names(&vocabulary, args)?;
+    let vocabulary = to_recognise(&args.vocabulary)?;
+    let source = match streamed {
+        true => None,
+        false => Some(Source::open(&args.inputs, &args.read)?),
+    };
     let restriction = restriction(&vocabulary, args)?;
     let known = restriction.as_ref().map(Restriction::vocabulary);
     let mut recogniser = classifier(args.method, &args.classifier, known.unwrap_or(&vocabulary))?;
@@ -52,10 +55,9 @@ pub fn run(args: &ClassifyArgs, global: &Global) -> Result<u8, Failure> {
         args.classifier.lag.unwrap_or(0.0),
         global.json,
     );
-    if streamed {
+    let Some(source) = source else {
         return stream::run(&*recogniser, &teller);
-    }
-    let source = Source::open(&args.inputs, &args.read)?;
+    };
     let entries: Vec<&Entry> = source.inputs.entries.iter().collect();
     let read = source.each(&entries, "recognising", |_, entry| {
         answer(&*recogniser, &teller, &source, entry, args.frames)
@@ -75,21 +77,6 @@ pub fn run(args: &ClassifyArgs, global: &Global) -> Result<u8, Failure> {
         hint(&read.items, args);
     }
     Ok(read.unless_failed()?.print_skipped())
-}
-
-/// Refuses a vocabulary in which an answer could not be told from a primitive.
-fn check_names(vocabulary: &Vocabulary, args: &ClassifyArgs) -> Result<(), Failure> {
-    let mut names = vocabulary.primitives().iter().map(|p| p.name());
-    match names.find(|name| ["rest", "none"].contains(name)) {
-        None => Ok(()),
-        Some(name) => {
-            let shown = args.vocabulary.display();
-            let message = format!("the primitive `{name}` bears the name of an answer");
-            Err(Failure::failed(message).hint(format!(
-                "`kineme edit {shown} -o OUT --rename {name}=NAME` gives it another"
-            )))
-        }
-    }
 }
 
 /// The part of the body that is looked at, where it is not the whole.

@@ -45,8 +45,8 @@ pub fn run(args: &ControlArgs, global: &Global) -> Result<u8, Failure> {
     }
     let mut robot = machines::robot(args, &vocabulary)?;
     let begun = Instant::now();
-    let performance = perform(&vocabulary, plan, watched.as_ref(), &mut *robot)?;
-    let factor = plan.seconds / begun.elapsed().as_secs_f64();
+    let (performance, ended) = perform(&vocabulary, plan, watched.as_ref(), &mut *robot)?;
+    let factor = performance.done.duration_secs() / begun.elapsed().as_secs_f64();
     if let (Some(out), Some(format)) = (&args.out, written) {
         let bytes = format.bytes(&performance.done)?;
         output::write_bytes(out, existing(global), &bytes).map_err(unwritten)?;
@@ -66,15 +66,16 @@ pub fn run(args: &ControlArgs, global: &Global) -> Result<u8, Failure> {
         false => told.text([args.out.as_deref(), page.as_deref()]),
     };
     print(text.as_bytes())?;
-    Ok(0)
+    ended.map(|()| 0)
 }
 
+/// What was done, and why it ended before the plan did if it did: what was done until then is not lost.
 fn perform(
     vocabulary: &Vocabulary,
     plan: &Plan,
     watched: Option<&Watched>,
     robot: &mut dyn Robot,
-) -> Result<Performance, Failure> {
+) -> Result<(Performance, Result<(), Failure>), Failure> {
     let filter = match watched {
         Some(_) => Some(Filter::new(vocabulary, &FilterSettings::default())?),
         None => None,
@@ -90,8 +91,11 @@ fn perform(
         None => alone(&mut session, None, &bar),
     };
     bar.finish_and_clear();
-    done?;
-    Ok(session.performance("control")?)
+    match session.performance("control") {
+        Ok(performance) => Ok((performance, done)),
+        // Nothing was done: why is what there is to say.
+        Err(nothing) => Err(done.err().unwrap_or(nothing.into())),
+    }
 }
 
 /// Goes on to the end of the plan, with a recording or nothing to watch.

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use crate::args::{EvaluateArgs, Global, MethodName};
 use crate::failure::{Failure, print};
 use crate::progress;
-use crate::vocabularies::read;
+use crate::vocabularies::to_recognise;
 use clips::{Clip, clips};
 use methods::{name, recogniser};
 
@@ -46,7 +46,7 @@ pub fn run(args: &EvaluateArgs, global: &Global) -> Result<u8, Failure> {
             "stdin cannot be both the vocabulary and the manifest",
         ));
     }
-    let vocabulary = read(&args.vocabulary)?;
+    let vocabulary = to_recognise(&args.vocabulary)?;
     let mut found = clips(&vocabulary, args)?;
     let clips = std::mem::take(&mut found.items);
     let bootstrap = Bootstrap {

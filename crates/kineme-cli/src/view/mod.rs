@@ -24,7 +24,12 @@ pub fn run(args: &ViewArgs, global: &Global) -> Result<u8, Failure> {
         Some(out) if out.as_os_str() == "-" => print(html.as_bytes())?,
         Some(out) => {
             output::write_bytes(out, existing(global), html.as_bytes()).map_err(unwritten)?;
-            print(format!("written: {}\n", out.display()).as_bytes())?;
+            let shown = out.display().to_string();
+            let told = match global.json {
+                true => crate::json::line(&serde_json::json!({ "written": shown }))?,
+                false => format!("written: {shown}\n"),
+            };
+            print(told.as_bytes())?;
         }
         None => serve::serve(&html, args.port, !args.no_open)?,
     }

@@ -131,6 +131,16 @@ impl Entry {
     }
 }
 
+impl Entry {
+    /// Why nothing is there, where that is known before it is read.
+    pub fn lost(&self) -> Option<&FormatError> {
+        match &self.place {
+            Location::Lost(why) => Some(why),
+            _ => None,
+        }
+    }
+}
+
 impl Location {
     /// All bytes, or the first `most`.
     fn bytes(&self, shown: &str, most: Option<usize>, handles: &Handles) -> Result<Vec<u8>> {

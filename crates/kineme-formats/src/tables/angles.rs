@@ -5,7 +5,7 @@
 use std::io::Read;
 
 use crate::error::{FormatError, Place, Result};
-use crate::sheet::{Row, Sheet, first_cells};
+use crate::sheet::{Row, Sheet, first_cells, quoted};
 
 /// The columns every table begins with: seconds, metres (z up), radians.
 pub const FIXED_COLUMNS: [&str; 5] = ["time", "root_x", "root_y", "root_z", "root_yaw"];
@@ -58,7 +58,9 @@ impl<R: Read> AngleRows<R> {
         for (i, expected) in FIXED_COLUMNS.iter().enumerate() {
             match header.get(i) {
                 Some(cell) if cell == expected => {}
-                Some(cell) => return Err(error(format!("`{cell}` in place of `{expected}`"))),
+                Some(cell) => {
+                    return Err(error(format!("{} in place of `{expected}`", quoted(cell))));
+                }
                 None => return Err(error(format!("no column `{expected}`"))),
             }
         }

@@ -276,6 +276,12 @@ fn damaged_scripts_are_refused_with_the_line() {
                 "times rise",
             ),
             (
+                "in a year",
+                &with("time = 0.60", "time = 3e7"),
+                Line(8),
+                "within 3600 s",
+            ),
+            (
                 "before 0",
                 &with("time = 0.00", "time = -1"),
                 Line(6),

@@ -8,6 +8,9 @@ use crate::math::spline::ClampedSpline;
 use crate::motion::Motion;
 use crate::skeleton::{Role, Root, Skeleton};
 
+/// Frames that keys may make: hours at the rate of any camera.
+const MOST_FRAMES: f64 = 1e6;
+
 /// One angle that the keys move: a role and the place in its list of degrees.
 struct Channel {
     role: Role,
@@ -19,7 +22,8 @@ struct Channel {
 /// differentiable and at rest at both ends; what a key does not name keeps its last value, first the neutral one.
 ///
 /// # Errors
-/// Without keys, when times do not rise, when the body lacks a role that a key names, or when the rate is not positive.
+/// Without keys, when times do not rise, when the body lacks a role that a key names, when the rate is not positive, or
+/// would make more than a million frames.
 pub fn perform(name: &str, keys: &[Key], body: &Arc<Skeleton>, rate_hz: f64) -> Result<Motion> {
     let (Some(first), Some(last)) = (keys.first(), keys.last()) else {
         return Err(Error::invalid(format!("`{name}` has no keys")));
@@ -30,7 +34,14 @@ pub fn perform(name: &str, keys: &[Key], body: &Arc<Skeleton>, rate_hz: f64) -> 
         )));
     }
     let channels = channels(name, keys)?;
-    let count = ((last.time - first.time) * rate_hz + 1e-9).floor() as usize + 1;
+    let count = ((last.time - first.time) * rate_hz + 1e-9).floor() + 1.0;
+    if count > MOST_FRAMES {
+        return Err(Error::invalid(format!(
+            "`{name}`: {:.0} s at {rate_hz} Hz would be {count:.0} frames, more than {MOST_FRAMES:.0}",
+            last.time - first.time
+        )));
+    }
+    let count = count as usize;
     let neutral = body.neutral();
     let mut poses = Vec::with_capacity(count * body.dof());
     for f in 0..count {

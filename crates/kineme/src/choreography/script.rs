@@ -129,16 +129,25 @@ impl ScriptAnimation {
     }
 }
 
+/// No key is later than an hour: what is written by hand is a movement.
+const LATEST_SECS: f64 = 3600.0;
+
 impl Key {
     /// Checks the key by itself and against the one before it.
     ///
     /// # Errors
-    /// When the time is negative, not finite or not after `previous`, when a role has neither one nor three
+    /// When the time is negative, later than an hour, not finite or not after `previous`, when a role has neither one nor three
     /// angles, when an angle is not finite.
     pub fn validate(&self, previous: Option<&Key>) -> Result<()> {
         if !(self.time.is_finite() && self.time >= 0.0) {
             return Err(Error::invalid(format!(
                 "a key's time is {} s; times are finite and not negative",
+                self.time
+            )));
+        }
+        if self.time > LATEST_SECS {
+            return Err(Error::invalid(format!(
+                "a key's time is {} s; a movement ends within {LATEST_SECS} s",
                 self.time
             )));
         }

@@ -6,6 +6,10 @@ use nalgebra::{DMatrix, DVector};
 /// dilates it about its centre.
 pub const HULL_MARGIN: f64 = 0.1;
 
+/// So many times the hull's size from it, a coordinate of a query is far off: how far is no matter, and would cost the
+/// digits in which the hull's points differ.
+const FAR: f64 = 1e3;
+
 /// Share of the hull's size below which a query counts as inside.
 const INSIDE: f64 = 1e-10;
 
@@ -16,6 +20,19 @@ pub(super) fn nearest(points: &[f64], p: &[f64]) -> Vec<f64> {
     if dims == 0 {
         return Vec::new();
     }
+    let near = |d: usize| {
+        let own = points.iter().skip(d).step_by(dims).copied();
+        let low = own.clone().fold(f64::INFINITY, f64::min);
+        let high = own.fold(f64::NEG_INFINITY, f64::max);
+        [low, high]
+    };
+    let boxed: Vec<[f64; 2]> = (0..dims).map(near).collect();
+    let widest = boxed.iter().map(|[l, h]| h - l).fold(0.0, f64::max);
+    let near = p.iter().zip(&boxed);
+    let near: Vec<f64> = near
+        .map(|(x, [low, high])| x.clamp(low - FAR * widest, high + FAR * widest))
+        .collect();
+    let p = near.as_slice();
     // Seen from p: the nearest point is the one of least norm.
     let vertices: Vec<DVector<f64>> = points
         .chunks_exact(dims)

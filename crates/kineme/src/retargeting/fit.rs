@@ -54,7 +54,10 @@ pub fn retarget(
         None => RoleMap::detect(&names)?,
     };
     let marks = Landmarks::of(recording, &map);
-    let anatomy = Anatomy::of(&marks, body)?;
+    let anatomy = Anatomy::of(&marks, body).map_err(|e| match profile {
+        Some(p) => p.why_not(&map).unwrap_or(e),
+        None => e,
+    })?;
     let (motion, unobserved) = fit(recording.name(), recording.rate_hz(), &anatomy, body)?;
     Ok(Retargeted {
         motion,

@@ -150,6 +150,24 @@ impl Profile {
             joints,
         }
     }
+
+    /// Which of the roles that are needed it does not find, and what it calls that; `None` where it finds all.
+    pub(super) fn why_not(&self, found: &RoleMap) -> Option<Error> {
+        let missing = found.missing();
+        let role = missing.first()?;
+        let called = match self.roles.get(role) {
+            None => "does not name".to_owned(),
+            Some(names) => format!(
+                "has no joint of this recording (`{}`) for",
+                names.join("`, `")
+            ),
+        };
+        Some(Error::invalid(format!(
+            "the profile `{}` {called} the role {}, which is needed",
+            self.name,
+            role.name()
+        )))
+    }
 }
 
 impl RoleMap {

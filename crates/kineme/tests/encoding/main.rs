@@ -4,12 +4,19 @@ mod calibrated;
 mod performed;
 mod vocabulary;
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use kineme::choreography::{Key, perform};
 use kineme::perception::encoding::{
     Confidence, EffectorPaths, Encoder, Encoding, EncodingMethod, EncodingSettings, Extent,
     Matching, Rejection,
 };
 use kineme::primitive::{Observations, Posterior, Recogniser, readings};
-use kineme::{Format, Observed, RecordedJoint, Recording, Source};
+use kineme::{
+    Exemplar, Format, Modelling, Observed, Primitive, RecordedJoint, Recording, Role, Source,
+    Transitions, Vocabulary,
+};
 use nalgebra::{UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -67,6 +74,48 @@ fn what_a_primitive_makes_is_that_primitive_from_beginning_to_end() {
             assert!(rmse < 0.08, "{name} {height}: {rmse} m");
         }
     }
+}
+
+#[test]
+fn hands_that_a_turning_trunk_carries_are_met_as_near_as_others() {
+    let body = vocabulary::body();
+    let key = |time: f64, turn: f64| Key {
+        time,
+        angles: BTreeMap::from([
+            (Role::Chest, vec![0.0, 0.0, turn]),
+            (Role::RightUpperArm, vec![70.0, 5.0, 0.0]),
+            (Role::LeftUpperArm, vec![70.0, 5.0, 0.0]),
+        ]),
+    };
+    let twist = |deg: f64| {
+        let keys = [key(0.0, 0.0), key(0.4, deg), key(0.8, 0.0)];
+        perform("twist", &keys, body, 60.0).expect("a motion")
+    };
+    let exemplars = [-40.0, -30.0].map(|deg| Exemplar::whole(twist(deg), Some(vec![deg])));
+    let twists = Primitive::learn("twist", exemplars.into(), &Modelling::default());
+    let twists = twists.expect("a primitive");
+    let primitives = vec![twists, vocabulary().primitives()[0].clone()];
+    let none = Transitions::none(2);
+    let both = Vocabulary::new(Arc::clone(body), primitives, Vec::new(), none).expect("both");
+    let encoder = Encoder::new(&both, &EncodingSettings::default()).expect("an encoder");
+    let seen = paths(&twist(-40.0));
+    let encoding = encoder.encode("twist", &seen).expect("an encoding");
+    assert_eq!(encoding.label(), Some(0), "{encoding:?}");
+    let rmse = encoding.rmse_m.expect("a distance");
+    assert!(rmse < 0.02, "{rmse} m");
+}
+
+#[test]
+fn days_of_paths_are_refused_at_once() {
+    let encoder = encoder(&EncodingSettings::default());
+    let short = paths(&made("hook", 0.5));
+    let points = (0..short.frames()).flat_map(|f| short.at(f).to_vec());
+    let slow = EffectorPaths::new(1e-3, short.effectors().to_vec(), points.collect());
+    let refused = encoder.encode("slow", &slow.expect("paths"));
+    let why = refused
+        .expect_err("a day has too many instants")
+        .to_string();
+    assert!(why.contains("1000000 instants"), "{why}");
 }
 
 #[test]

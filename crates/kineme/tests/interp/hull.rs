@@ -26,6 +26,11 @@ fn known_hulls() {
     check(&square, &[0.3, 7.0], &[0.3, 1.05]);
     check(&square, &[-3.0, 7.0], &[-0.05, 1.05]);
     check(&square, &[1.05, 0.5], &[1.05, 0.5]);
+    // However far off: no digit of the hull is lost.
+    for far in [1e3, 1e9, 1e17, 1e300] {
+        check(&square, &[far, 0.25], &[1.05, 0.25]);
+        check(&square, &[-far, far], &[-0.05, 1.05]);
+    }
     // A segment in the plane: what is beside it falls onto it.
     check(&[0.0, 0.0, 1.0, 1.0], &[1.0, 0.0], &[0.5, 0.5]);
     check(&[0.0, 0.0, 1.0, 1.0], &[9.0, 9.0], &[1.05, 1.05]);

@@ -16,6 +16,8 @@ use crate::skeleton::{Role, Skeleton};
 
 /// A clip lasts at most this many times as long as the longest exemplar.
 const LONGEST_CLIP: f64 = 2.0;
+/// An observation is at most so many instants: hours.
+const MOST_INSTANTS: f64 = 1e6;
 /// Slower than this (reaches a second, and reaches at all) is rest.
 const STILL: [f64; 2] = [0.05, 0.02];
 
@@ -154,6 +156,14 @@ impl<'a> Encoder<'a> {
                 "paths of {}, but the encoder looks at {}",
                 paths.effectors().join(", "),
                 s.effectors.join(", ")
+            )));
+        }
+        let secs = paths.duration_secs();
+        if secs / s.sample_secs() > MOST_INSTANTS {
+            return Err(Error::invalid(format!(
+                "paths of {secs:.0} s at {} Hz; the encoder compares {MOST_INSTANTS:.0} instants of {:.3} s at most",
+                paths.rate_hz(),
+                s.sample_secs()
             )));
         }
         let (scale, unit_m) = match s.reach_m {

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::chains::{FAR, shares};
 use super::encoded::Course;
 use super::encoder::{Encoder, Seen, Verdict};
-use super::paths::{Chains, EffectorPaths};
+use super::paths::EffectorPaths;
 use super::settings::{EncodingSettings, SAMPLES};
 use super::track::Leg;
 use crate::error::Result;
@@ -225,7 +225,8 @@ fn best_two(costs: &[f64], primitive: Option<usize>) -> [f64; 2] {
     ]
 }
 
-/// Root mean square distance between the effectors of a motion, `every` so many frames, and those seen times factors.
+/// Root mean square distance between the effectors of a motion, `every` so many frames, and those seen times factors; both
+/// in the heading that is smoothed alike.
 pub(super) fn rmse_m(
     motion: &Motion,
     seen: &Seen,
@@ -233,14 +234,13 @@ pub(super) fn rmse_m(
     every: usize,
     s: &EncodingSettings,
 ) -> Result<Option<f64>> {
-    let chains = Chains::of(motion.skeleton(), &s.effectors)?;
+    let made = EffectorPaths::of_motion(motion, &s.effectors, s.heading_secs)?;
     let (mut sum, mut count) = (0.0, 0.0);
     for ((points, factor), f) in seen.instants.iter().zip(factors).zip((0..).step_by(every)) {
         if f >= motion.frames() {
             break;
         }
-        let (made, _) = chains.posture(motion.pose(f));
-        for (seen, made) in points.iter().zip(made) {
+        for (seen, made) in points.iter().zip(made.at(f)) {
             if let (Some(seen), Some(made)) = (seen, made) {
                 let gap: Vector3<f64> = *factor * seen - made;
                 sum += gap.norm_squared();

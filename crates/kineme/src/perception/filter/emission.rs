@@ -90,12 +90,15 @@ impl Emission {
         self.parts.iter().map(own).sum()
     }
 
-    /// The tempered logarithm, a second, by which a feature fits zero everywhere.
-    pub fn fit_to_zero(&self, feature: &Feature) -> f64 {
+    /// The tempered logarithm, a second, by which a feature fits zero everywhere if what is at zero varies `still` times
+    /// less than what moves, and both vary as well by so much variance a number, which is sensors'.
+    pub fn fit_to_zero(&self, feature: &Feature, still: f64, shaken: f64) -> f64 {
         let cost = |part: &Whitened| {
             let known = part.known.iter().map(|&i| feature.values[i]);
             let z = &part.transform * DVector::from_iterator(part.known.len(), known);
-            -0.5 * part.trust_per_sec * z.norm_squared()
+            let shaken = shaken * part.transform.norm_squared() / z.len() as f64;
+            let times = (1.0 + shaken) / (1.0 / still + shaken);
+            -0.5 * part.trust_per_sec * times * z.norm_squared()
         };
         self.parts.iter().map(cost).sum()
     }

@@ -143,9 +143,11 @@ impl Exact {
     pub fn moving(&self, feature: &Feature, jitter: f64) -> f64 {
         let squares = self.displaced.iter().map(|&i| feature.values[i].powi(2));
         let shaken = 2.0 * jitter;
-        // Of two postures that jitter, the difference is so much though nothing moves.
-        let moved = squares.sum::<f64>() - self.displaced.len() as f64 * shaken;
-        0.5 * TRUST_PER_SEC * moved.max(0.0) / (SWAY_M * SWAY_M + shaken)
+        // Of two postures that jitter, the difference is so much though nothing moves; and as much again now and then, as
+        // joints move many numbers at once.
+        let moved = squares.sum::<f64>() - 2.0 * self.displaced.len() as f64 * shaken;
+        let cost = 0.5 * TRUST_PER_SEC * moved.max(0.0) / (SWAY_M * SWAY_M + shaken);
+        Self::told(jitter) * cost
     }
 
     /// How much of what is told counts where postures jitter by this variance, a share.

@@ -59,8 +59,7 @@ impl Patterns {
             return Ok(Arc::clone(&self.complete));
         }
         let made = || self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        let kept = made().iter().find(|k| k.all.unknown == unknown).cloned();
-        if let Some(known) = kept {
+        if let Some(known) = again(&mut made(), unknown) {
             return Ok(known);
         }
         // Others go on while it is made.
@@ -70,4 +69,12 @@ impl Patterns {
         made.push_front(Arc::clone(&known));
         Ok(known)
     }
+}
+
+/// What was made for these unknown numbers; it is the latest then.
+fn again(made: &mut VecDeque<Arc<Known>>, unknown: &[bool]) -> Option<Arc<Known>> {
+    let at = made.iter().position(|k| k.all.unknown == unknown)?;
+    let known = made.remove(at)?;
+    made.push_front(Arc::clone(&known));
+    Some(known)
 }

@@ -20,6 +20,9 @@ use crate::primitive::{Listener, Observation, Observations, Reading};
 
 /// Displacements count so much more at rest, where a body stays within half of what people differ by in movement.
 const STILL: f64 = 4.0;
+/// Displacements vary by so many times the jitter of postures: two of these err, hands, which tell most, jitter more than
+/// the mean, and what is averaged errs alike for some looks.
+const SHAKEN: f64 = 8.0;
 /// Among people, so many times what a moment costs that fits as well as any does is taken off unknown movement a second:
 /// beginning a movement has its price at once, and evidence that counts little would be late to pay it.
 const STRANGE: f64 = 2.4;
@@ -181,7 +184,8 @@ impl<'a> Stream<'a> {
         }
         // At rest the displacements are nothing, and the posture may be any: it fits as postures usually do.
         let posture = (all.usual_cost() - displacements.usual_cost()).max(0.0);
-        let rest = dt * (STILL * displacements.fit_to_zero(feature) - posture);
+        let jitter = self.steady.jitter();
+        let rest = dt * (displacements.fit_to_zero(feature, STILL, SHAKEN * jitter) - posture);
         let unknown = self.filter.learned.unknown_per_sec;
         let unknown = match self.filter.stream.lasting {
             None => unknown,
@@ -192,7 +196,6 @@ impl<'a> Stream<'a> {
         if let Some(exact) = exact {
             let wide = (self.fit.states.as_slice(), all.usual_cost());
             let going = self.looks.take(feature, dt);
-            let jitter = self.steady.jitter();
             let straight = exact.fit(feature, (going.as_ref(), jitter), wide, &mut self.exact);
             let told = Exact::told(jitter);
             for (log, alike) in self.exact.iter_mut().zip(&self.fit.states) {
