@@ -51,7 +51,10 @@ fn when_hands_move_tells_clips_apart_that_paces_make_alike() {
         ahead(true, Extent::Clip, &quick),
         ahead(false, Extent::Clip, &quick),
     );
-    assert!(with > alone + 0.005, "{with} with outlines, {alone} without");
+    assert!(
+        with > alone + 0.005,
+        "{with} with outlines, {alone} without"
+    );
     let (alone, with) = (
         ahead(true, Extent::Stream, &quick),
         ahead(false, Extent::Stream, &quick),
