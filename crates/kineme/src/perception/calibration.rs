@@ -22,7 +22,7 @@ pub fn calibrated(vocabulary: Vocabulary, before: Option<&Vocabulary>) -> Result
     let of_filter = known("filter").filter(|(_, c)| Filter::understands(c));
     let mut learned = vec![learn(Filter::calibration, &vocabulary, of_filter)?];
     if Encoder::can_watch(vocabulary.body()) {
-        let of_encoder = known("encoder");
+        let of_encoder = known("encoder").filter(|(_, c)| Encoder::understands(c));
         learned.push(learn(Encoder::calibration, &vocabulary, of_encoder)?);
     }
     let mut all = learned.into_iter();

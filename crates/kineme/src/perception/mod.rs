@@ -6,6 +6,8 @@ mod checked;
 pub mod encoding;
 mod filter;
 mod frame;
+mod outline;
+mod pairs;
 mod paper;
 mod parts;
 mod restriction;

@@ -33,3 +33,10 @@ pub(super) fn own_places(primitive: &Primitive) -> Vec<Vec<f64>> {
     let middle = (dims > MOST_DIMS).then(|| primitive.middle());
     own.chain(middle).collect()
 }
+
+/// Whether a primitive's parameters have a meaning, so that its executions span a manifold: principal coordinates of a
+/// few people do not.
+pub(super) fn manifold(primitive: &Primitive) -> bool {
+    let source = primitive.parameters().source();
+    !matches!(source, ParameterSource::Principal { .. })
+}

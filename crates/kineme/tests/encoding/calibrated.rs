@@ -7,16 +7,13 @@ use kineme::{Modelling, Primitive, Transitions, Vocabulary};
 
 use crate::vocabulary::{NAMES, made, paths, vocabulary, vocabulary_of};
 
-/// Numbers that no fit gives: 1000 and more. The first that the whole of the filter has is its edition, and stays.
+/// Numbers that no fit gives: 1000 and more. The first that the whole has is its edition, and stays.
 fn hand_made(vocabulary: &Vocabulary, of: &Calibration) -> Calibration {
     let number = |p: usize, i: usize| 1000.0 + (10 * p + i) as f64;
     let length = |p: usize| of.primitives[p].len();
     let primitives = 0..vocabulary.primitives().len();
-    let edition = (of.recogniser == "filter").then(|| of.shared[0]);
     let mut shared: Vec<f64> = (0..of.shared.len()).map(|i| number(100, i)).collect();
-    if let Some(edition) = edition {
-        shared[0] = edition;
-    }
+    shared[0] = of.shared[0];
     Calibration {
         recogniser: of.recogniser.clone(),
         primitives: primitives
@@ -212,4 +209,22 @@ fn a_calibration_of_another_kind_is_refused_by_the_encoder() {
         let again = again.expect("a calibrated vocabulary");
         assert!(Encoder::new(&again, &EncodingSettings::default()).is_ok());
     }
+}
+
+#[test]
+fn what_an_earlier_encoder_kept_is_fitted_anew() {
+    let mut old = before().calibration("encoder").expect("kept").clone();
+    // It began with the limit.
+    old.shared.remove(0);
+    let old = vocabulary()
+        .clone()
+        .calibrated(old)
+        .expect("finite numbers");
+    let settings = EncodingSettings::default();
+    let fresh = Encoder::new(vocabulary(), &settings).expect("an encoder");
+    let other = Encoder::new(&old, &settings).expect("an encoder");
+    assert_eq!(other.rejection(), fresh.rejection());
+    let again = calibrated(old.clone(), Some(&old)).expect("a calibrated vocabulary");
+    let known = calibrated(vocabulary().clone(), None).expect("a calibrated vocabulary");
+    assert_eq!(again.calibration("encoder"), known.calibration("encoder"));
 }

@@ -1,6 +1,7 @@
 //! Trajectory encoding: its laws, on movements made by hand.
 
 mod calibrated;
+mod outlines;
 mod performed;
 mod vocabulary;
 

@@ -11,8 +11,10 @@ use crate::skeleton::Skeleton;
 
 /// The recogniser that a calibration names.
 const NAME: &str = "encoder";
-/// Shared numbers: limit, temperature, bias, the temperature of clips and its spread, then the weights.
-const SHARED: usize = 5 + SCORES;
+/// The first number kept: what the others mean has changed since they were first kept.
+const EDITION: f64 = 2.0;
+/// Shared numbers: edition, limit, temperature, bias, the temperature of clips and its spread, then the weights.
+const SHARED: usize = 6 + SCORES;
 
 impl Encoder<'_> {
     /// Whether a body has the shoulders and hands that the default settings look at.
@@ -28,14 +30,19 @@ impl Encoder<'_> {
     /// When the vocabulary has no primitive, or its body is none that [`Self::can_watch`].
     pub fn calibration(vocabulary: &Vocabulary, kept: &[Option<Vec<f64>>]) -> Result<Calibration> {
         let settings = EncodingSettings::default();
-        let rows = checked_rows(vocabulary, &settings)?;
+        let (rows, outlines) = checked_rows(vocabulary, &settings)?;
         let limit = |numbers: &Option<Vec<f64>>| match numbers.as_deref() {
             Some([limit]) if *limit > 0.0 => Some(*limit),
             _ => None,
         };
         let limits: Vec<Option<f64>> = kept.iter().map(limit).collect();
-        let rejection = Rejection::fit(vocabulary, &rows, &settings, &limits)?;
+        let rejection = Rejection::fit(vocabulary, (&rows, outlines.as_ref()), &settings, &limits)?;
         Ok(rejection.calibration())
+    }
+
+    /// Whether numbers that a vocabulary keeps mean what they mean to this encoder.
+    pub(in crate::perception) fn understands(calibration: &Calibration) -> bool {
+        calibration.shared.first() == Some(&EDITION)
     }
 }
 
@@ -45,7 +52,14 @@ impl Rejection {
             temperature,
             spread,
         } = self.confidence;
-        let mut shared = vec![self.limit, self.temperature, self.bias, temperature, spread];
+        let mut shared = vec![
+            EDITION,
+            self.limit,
+            self.temperature,
+            self.bias,
+            temperature,
+            spread,
+        ];
         shared.extend(self.weights);
         Calibration {
             recogniser: NAME.into(),
@@ -54,7 +68,7 @@ impl Rejection {
         }
     }
 
-    /// The rejection that is kept with a vocabulary, if it was fitted to such settings.
+    /// The rejection that is kept with a vocabulary, if it was fitted to such settings by such an encoder.
     pub(super) fn kept(
         vocabulary: &Vocabulary,
         settings: &EncodingSettings,
@@ -62,7 +76,9 @@ impl Rejection {
         let Some(kept) = vocabulary.calibration(NAME) else {
             return Ok(None);
         };
-        if !fits_alike(settings) {
+        // An earlier edition's numbers start with a limit.
+        let earlier = !kept.shared.is_empty() && !Encoder::understands(kept);
+        if earlier || !fits_alike(settings) {
             return Ok(None);
         }
         let one_each = kept.primitives.iter().all(|numbers| numbers.len() == 1);
@@ -76,12 +92,12 @@ impl Rejection {
         let (fixed, weights) = kept.shared.split_at(SHARED - SCORES);
         Self {
             limits: kept.primitives.concat(),
-            limit: fixed[0],
-            temperature: fixed[1],
-            bias: fixed[2],
+            limit: fixed[1],
+            temperature: fixed[2],
+            bias: fixed[3],
             confidence: Confidence {
-                temperature: fixed[3],
-                spread: fixed[4],
+                temperature: fixed[4],
+                spread: fixed[5],
             },
             weights: std::array::from_fn(|i| weights[i]),
         }

@@ -4,6 +4,7 @@ use super::chains::{Ends, FAR, chain, class_costs, shares};
 use super::cost::{Block, Instants, blocks, instants};
 use super::extrapolation::background;
 use super::literal::Literal;
+use super::outline::{Outlines, sums};
 use super::paths::EffectorPaths;
 use super::rejection::{Evidence, Rejection};
 use super::rows::{Row, rows};
@@ -32,6 +33,8 @@ pub struct Encoder<'a> {
     pub(super) vocabulary: &'a Vocabulary,
     pub(super) settings: EncodingSettings,
     pub(super) rows: Vec<Row>,
+    /// What clips cost rows beside their chains.
+    outlines: Option<Outlines>,
     pub(super) rejection: Rejection,
     pub(super) literal: Option<Literal>,
     /// The stretched-out hand from between the shoulders of the body, metres.
@@ -46,6 +49,8 @@ pub(super) struct Seen {
     pub still: Vec<bool>,
     /// Metres of the instants that are a unit; `None`: as many as of the row.
     unit_m: Option<f64>,
+    /// What the outline of a clip costs each row; `None` of streams, and where there is none to compare.
+    outlines: Option<Vec<f64>>,
     pub duration_secs: f64,
 }
 
@@ -87,12 +92,12 @@ impl<'a> Encoder<'a> {
     /// When a setting is outside of its range, the vocabulary has no primitive, or its body lacks an effector or
     /// shoulders.
     pub fn new(vocabulary: &'a Vocabulary, settings: &EncodingSettings) -> Result<Self> {
-        let rows = checked_rows(vocabulary, settings)?;
+        let (rows, outlines) = checked_rows(vocabulary, settings)?;
         let rejection = match Rejection::kept(vocabulary, settings)? {
             Some(kept) => kept,
-            None => Rejection::fit(vocabulary, &rows, settings, &[])?,
+            None => Rejection::fit(vocabulary, (&rows, outlines.as_ref()), settings, &[])?,
         };
-        Self::of(vocabulary, settings, rows, rejection)
+        Self::of(vocabulary, settings, (rows, outlines), rejection)
     }
 
     /// The same with a rejection that was fitted to this vocabulary with these settings.
@@ -104,14 +109,14 @@ impl<'a> Encoder<'a> {
         settings: &EncodingSettings,
         rejection: Rejection,
     ) -> Result<Self> {
-        let rows = checked_rows(vocabulary, settings)?;
-        Self::of(vocabulary, settings, rows, rejection.checked(vocabulary)?)
+        let known = checked_rows(vocabulary, settings)?;
+        Self::of(vocabulary, settings, known, rejection.checked(vocabulary)?)
     }
 
     fn of(
         vocabulary: &'a Vocabulary,
         settings: &EncodingSettings,
-        rows: Vec<Row>,
+        (rows, outlines): (Vec<Row>, Option<Outlines>),
         rejection: Rejection,
     ) -> Result<Self> {
         let literal = match settings.method {
@@ -123,6 +128,7 @@ impl<'a> Encoder<'a> {
             vocabulary,
             settings: settings.clone(),
             rows,
+            outlines,
             rejection,
             literal,
         })
@@ -174,12 +180,16 @@ impl<'a> Encoder<'a> {
         let blocks = blocks(&instants, s);
         let reach = unit_m.map_or(self.body_reach_m, |u| u * REACH_UNITS);
         let still = blocks.iter().map(|b| self.is_still(b, reach)).collect();
+        let secs = paths.duration_secs();
+        let unit = unit_m.unwrap_or_else(|| self.usual_row_m()) / scale;
+        let outlines = self.outlines.as_ref().filter(|_| self.is_clip(secs));
         Ok(Seen {
+            outlines: outlines.and_then(|o| o.costs(paths, unit)),
             instants,
             blocks,
             still,
             unit_m,
-            duration_secs: paths.duration_secs(),
+            duration_secs: secs,
         })
     }
 
@@ -210,7 +220,8 @@ impl<'a> Encoder<'a> {
         }
         let clip = self.is_clip(seen.duration_secs);
         let legs = tracker.path(clip);
-        let whole = clip.then(|| self.costs(seen, 0..seen.blocks.len(), Ends::Whole));
+        let chains = clip.then(|| self.chains(seen, 0..seen.blocks.len(), Ends::Whole));
+        let whole = chains.as_ref().map(|chains| self.of_clip(seen, chains));
         let mut stretches = self.stretches(seen, &legs, whole.as_deref());
         let all: f64 = seen.blocks.iter().map(|b| b.weight).sum();
         let blind = seen.blocks.iter().all(Block::is_blind);
@@ -229,9 +240,13 @@ impl<'a> Encoder<'a> {
             };
         }
         let costs = whole.unwrap_or_else(|| weighted(&stretches, seen, primitives));
+        // Whether it is any of them is told by what chains cost alone, as that of streams is.
         let evidence = Evidence {
             background: background(&seen.instants, &seen.blocks, self.usual_unit_m(seen), s),
-            costs,
+            costs: match &chains {
+                Some(chains) => self.class_costs(chains),
+                None => costs.clone(),
+            },
         };
         let posterior = if seen.still.iter().all(|s| *s) {
             Posterior {
@@ -241,7 +256,7 @@ impl<'a> Encoder<'a> {
             }
         } else if clip {
             let none = self.rejection.none(&evidence);
-            let known = self.rejection.confidence.shares(&evidence.costs);
+            let known = self.rejection.confidence.shares(&costs);
             Posterior {
                 primitives: known.into_iter().map(|p| (1.0 - none) * p).collect(),
                 rest: 0.0,
@@ -260,31 +275,40 @@ impl<'a> Encoder<'a> {
         let novelty = leading.map_or(0.0, |k| evidence.costs[k] / self.rejection.limits[k]);
         Verdict {
             posterior,
-            costs: evidence.costs,
+            costs,
             novelty,
             legs,
             stretches,
         }
     }
 
+    /// What each row costs over some blocks.
+    fn chains(&self, seen: &Seen, of: std::ops::Range<usize>, ends: Ends) -> Vec<f64> {
+        let chain = |row: &Row| {
+            let blocks = (&seen.blocks[of.clone()], seen.unit_m(row));
+            chain(row, blocks, ends, &self.settings)
+        };
+        self.rows.iter().map(chain).collect()
+    }
+
+    /// The cost of each primitive, of what its rows cost.
+    fn class_costs(&self, of_rows: &[f64]) -> Vec<f64> {
+        let primitives = self.vocabulary.primitives().len();
+        let temperature = self.settings.temperature;
+        class_costs(&self.rows, of_rows, primitives, temperature, |_| true)
+    }
+
+    /// The cost of each primitive as the whole: of its rows' chains and outlines.
+    fn of_clip(&self, seen: &Seen, chains: &[f64]) -> Vec<f64> {
+        match &seen.outlines {
+            Some(outlines) => self.class_costs(&sums(chains, outlines)),
+            None => self.class_costs(chains),
+        }
+    }
+
     /// The cost of each primitive over some blocks.
     pub(super) fn costs(&self, seen: &Seen, of: std::ops::Range<usize>, ends: Ends) -> Vec<f64> {
-        let chains: Vec<f64> = self
-            .rows
-            .iter()
-            .map(|row| {
-                let blocks = (&seen.blocks[of.clone()], seen.unit_m(row));
-                chain(row, blocks, ends, &self.settings)
-            })
-            .collect();
-        let primitives = self.vocabulary.primitives().len();
-        class_costs(
-            &self.rows,
-            &chains,
-            primitives,
-            self.settings.temperature,
-            |_| true,
-        )
+        self.class_costs(&self.chains(seen, of, ends))
     }
 
     /// Metres of an observation that are a unit of no row in particular.
@@ -355,15 +379,18 @@ impl<'a> Encoder<'a> {
     }
 }
 
+/// The rows of a vocabulary and their outlines.
 pub(super) fn checked_rows(
     vocabulary: &Vocabulary,
     settings: &EncodingSettings,
-) -> Result<Vec<Row>> {
+) -> Result<(Vec<Row>, Option<Outlines>)> {
     settings.check()?;
     if vocabulary.primitives().is_empty() {
         return Err(Error::invalid("an encoder needs a primitive"));
     }
-    rows(vocabulary, settings)
+    let rows = rows(vocabulary, settings)?;
+    let outlines = Outlines::new(vocabulary, &rows, settings)?;
+    Ok((rows, outlines))
 }
 
 /// The mean over the stretches, by how long they last.

@@ -14,6 +14,7 @@ mod heading;
 mod listener;
 mod literal;
 mod literally;
+mod outline;
 mod paths;
 mod performed;
 mod rejection;

@@ -8,6 +8,7 @@ use super::chains::{Ends, FAR, chain, class_costs, shares};
 use super::confidence::Confidence;
 use super::cost::{blocks, instants};
 use super::extrapolation::background;
+use super::outline::{Outlines, sums};
 use super::paths::EffectorPaths;
 use super::rows::Row;
 use super::settings::{EncodingSettings, REACH_UNITS};
@@ -143,7 +144,7 @@ impl Rejection {
     /// primitive's limit that is given stays as it is.
     pub(super) fn fit(
         vocabulary: &Vocabulary,
-        rows: &[Row],
+        (rows, outlines): (&[Row], Option<&Outlines>),
         s: &EncodingSettings,
         given: &[Option<f64>],
     ) -> Result<Self> {
@@ -151,7 +152,7 @@ impl Rejection {
         let kept = rows.len().min(MOST_CASES);
         let cases: Vec<Case> = (0..kept)
             .into_par_iter()
-            .map(|k| Case::of(vocabulary, rows, k * rows.len() / kept, s))
+            .map(|k| Case::of(vocabulary, (rows, outlines), k * rows.len() / kept, s))
             .collect::<Result<_>>()?;
         let own: Vec<Vec<f64>> = (0..primitives)
             .map(|p| {
@@ -219,7 +220,7 @@ impl Rejection {
 /// An exemplar encoded by the others.
 struct Case {
     primitive: usize,
-    /// The costs without itself; `None` for a primitive of one exemplar, and where there is no other primitive.
+    /// The costs without itself, of chains and outlines; `None` for a primitive of one exemplar, and where there is no other primitive.
     alone: Option<Vec<f64>>,
     /// Without itself and the nearer half of its primitive; `None` for a primitive of one exemplar.
     known: Option<Evidence>,
@@ -228,7 +229,12 @@ struct Case {
 }
 
 impl Case {
-    fn of(vocabulary: &Vocabulary, rows: &[Row], row: usize, s: &EncodingSettings) -> Result<Self> {
+    fn of(
+        vocabulary: &Vocabulary,
+        (rows, outlines): (&[Row], Option<&Outlines>),
+        row: usize,
+        s: &EncodingSettings,
+    ) -> Result<Self> {
         let primitives = vocabulary.primitives();
         let own = rows[row].primitive;
         let motion = &primitives[own].exemplars()[rows[row].exemplar].motion;
@@ -247,17 +253,19 @@ impl Case {
         let others = near.len();
         near.truncate(others / 2);
         let background = background(&instants, &blocks, unit_m, s);
-        let of = |counts: &dyn Fn(usize) -> bool| {
-            class_costs(rows, &costs, primitives.len(), s.temperature, counts)
+        let of = |costs: &[f64], counts: &dyn Fn(usize) -> bool| {
+            class_costs(rows, costs, primitives.len(), s.temperature, counts)
         };
         let evidence = |counts: &dyn Fn(usize) -> bool| Evidence {
-            costs: of(counts),
+            costs: of(&costs, counts),
             background,
         };
+        let with_outlines = outlines.and_then(|o| Some(sums(&costs, &o.costs(&paths, unit_m)?)));
+        let whole = with_outlines.as_deref().unwrap_or(&costs);
         let seen = !blocks.is_empty();
         Ok(Self {
             primitive: own,
-            alone: (seen && others > 0 && primitives.len() > 1).then(|| of(&|r| r != row)),
+            alone: (seen && others > 0 && primitives.len() > 1).then(|| of(whole, &|r| r != row)),
             known: (seen && others > 0).then(|| evidence(&|r| r != row && !near.contains(&r))),
             unknown: (seen && primitives.len() > 1)
                 .then(|| evidence(&|r| rows[r].primitive != own)),

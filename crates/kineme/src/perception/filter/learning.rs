@@ -6,10 +6,10 @@ use super::evidence::{Evidence, Trusts};
 use super::learned::{Learned, SCORES, classes, scores, unit};
 use super::logistic::logistic;
 use super::recogniser::Filter;
-use super::rows::manifold;
 use super::temperature::{belief, chance_lead, temperature};
 use crate::error::Result;
 use crate::math::statistics::{median, quantile};
+use crate::perception::rows::manifold;
 use crate::perception::temperature::LogNormal;
 use crate::primitive::{Observations, Vocabulary};
 

@@ -2,7 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::rows::{Row, manifold};
+use super::rows::Row;
+use crate::perception::pairs::{MOST_PAIRS, all_pairs, farther};
+use crate::perception::rows::manifold;
 use crate::primitive::Vocabulary;
 
 /// Standard deviations expected before any exemplar was seen, metres: of displacements, what people and retargeting are
@@ -17,8 +19,6 @@ const PRIOR_COUNT: f64 = 200.0;
 const SHRINK: f64 = 0.1;
 /// Phase within which the most alike moment is looked for.
 const NEAR: f64 = 0.15;
-/// At most so many pairs of rows a primitive.
-const MOST_PAIRS: usize = 200;
 
 /// The covariance of features about their row; `still` tells which of their numbers are of postures.
 ///
@@ -79,21 +79,11 @@ pub(super) fn pairs<R>(
         true => all_pairs(&members),
         false => neighbours(rows, &members),
     };
-    let mut residuals: Vec<(f64, R)> = pairs.into_iter().map(residual).collect();
-    if principal && residuals.len() > 1 {
-        residuals.sort_by(|a, b| a.0.total_cmp(&b.0));
-        residuals.drain(..residuals.len() / 2);
+    let residuals: Vec<(f64, R)> = pairs.into_iter().map(residual).collect();
+    match principal {
+        true => farther(residuals),
+        false => residuals.into_iter().map(|(_, r)| r).collect(),
     }
-    residuals.into_iter().map(|(_, r)| r).collect()
-}
-
-/// Pairs of rows, evenly taken where they are many.
-fn all_pairs(members: &[usize]) -> Vec<(usize, usize)> {
-    let n = members.len();
-    let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
-    let step = (n * n.saturating_sub(1) / 2).div_ceil(MOST_PAIRS).max(1);
-    let pairs = pairs.step_by(step);
-    pairs.map(|(i, j)| (members[i], members[j])).collect()
 }
 
 /// Each row with the one nearest in parameters.

@@ -2,8 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::rows::{Row, manifold};
+use super::rows::Row;
 use crate::error::Result;
+use crate::perception::rows::manifold;
 use crate::primitive::{Place, Primitive};
 
 /// States within so much phase of the most probable one belong to it.

@@ -4,7 +4,8 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::motion::Motion;
-use crate::primitive::{Course, ParameterSource, Primitive, Sample, Travel, Vocabulary};
+use crate::perception::rows::manifold;
+use crate::primitive::{Course, Primitive, Sample, Travel, Vocabulary};
 
 /// Moments a second at which a course is sampled, as far as [`FEWEST`] and [`MOST`] allow.
 const RATE_HZ: f64 = 30.0;
@@ -168,13 +169,6 @@ fn rows_of(index: usize, primitive: &Primitive, most: usize, finer: f64) -> Resu
         }
     }
     Ok(rows)
-}
-
-/// Whether a primitive's parameters have a meaning, so that its executions span a manifold: principal coordinates of a
-/// few people do not.
-pub(super) fn manifold(primitive: &Primitive) -> bool {
-    let source = primitive.parameters().source();
-    !matches!(source, ParameterSource::Principal { .. })
 }
 
 /// How far apart the grid's points lie, of `m` parameters; `None` where there is no grid.

@@ -4,8 +4,9 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::exact::Tangents;
-use super::rows::{Row, manifold, spacing};
+use super::rows::{Row, spacing};
 use crate::error::Result;
+use crate::perception::rows::manifold;
 use crate::primitive::Vocabulary;
 
 /// Deviations: of phase in moments of the row, of parameters in halves of the grid's spacing. Within half a moment and
