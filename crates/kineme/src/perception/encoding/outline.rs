@@ -10,7 +10,7 @@ use super::paths::EffectorPaths;
 use super::rows::Row;
 use super::settings::{EncodingSettings, REACH_UNITS};
 use crate::error::Result;
-use crate::perception::outline::{self, outline};
+use crate::perception::outline::{self, octaves, outline};
 use crate::perception::pairs::{all_pairs, farther};
 use crate::perception::rows::manifold;
 use crate::primitive::Vocabulary;
@@ -94,7 +94,12 @@ fn of_paths(paths: &EffectorPaths, unit_m: f64) -> Option<DVector<f64>> {
     }
     let dims = clip.len() / paths.frames();
     let all: Vec<usize> = (0..dims).collect();
-    Some(outline(&clip, dims, &all))
+    let (parts, octaves) = (outline(&clip, dims, &all), octaves(&clip, dims, &all));
+    let numbers = parts.len() + octaves.len();
+    Some(DVector::from_iterator(
+        numbers,
+        parts.iter().chain(&octaves).copied(),
+    ))
 }
 
 /// The course of an effector, straight where it was not seen for a while; `None` where that is most of the time.
