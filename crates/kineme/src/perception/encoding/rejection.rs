@@ -220,7 +220,8 @@ impl Rejection {
 /// An exemplar encoded by the others.
 struct Case {
     primitive: usize,
-    /// The costs without itself, of chains and outlines; `None` for a primitive of one exemplar, and where there is no other primitive.
+    /// The costs without itself, of chains and outlines; `None` for a primitive of one exemplar, and where there is no
+    /// other primitive.
     alone: Option<Vec<f64>>,
     /// Without itself and the nearer half of its primitive; `None` for a primitive of one exemplar.
     known: Option<Evidence>,
