@@ -56,9 +56,10 @@ pub fn run(args: &EncodeArgs, global: &Global) -> Result<u8, Failure> {
     })?;
     let read = source.each(&entries, "encoding", |i, entry| {
         let recording = source.read(entry)?;
+        let jointed = source.jointed(&recording)?;
         let paths = EffectorPaths::of_recording(
-            &recording,
-            source.profile(),
+            &jointed.recording,
+            jointed.profile.as_deref(),
             &settings.effectors,
             settings.heading_secs,
         )

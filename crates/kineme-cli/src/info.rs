@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::args::{Global, InfoArgs};
 use crate::failure::{Failure, print};
-use crate::source::{Source, print_warnings};
+use crate::source::{Jointed, Source, print_warnings};
 use crate::table::{Side, aligned};
 
 /// A motion, as `--json` tells it.
@@ -37,7 +37,9 @@ pub fn run(args: &InfoArgs, global: &Global) -> Result<u8, Failure> {
     let source = Source::open(&args.inputs, &args.read)?;
     let entries: Vec<_> = source.inputs.entries.iter().collect();
     let read = source.each(&entries, "reading", |_, entry| {
-        Ok(facts(&source.read(entry)?, &source))
+        let recording = source.read(entry)?;
+        let profile = profile(&source.jointed(&recording)?);
+        Ok(facts(&recording, profile))
     });
     if global.json {
         let mut lines = Vec::new();
@@ -59,20 +61,25 @@ pub fn run(args: &InfoArgs, global: &Global) -> Result<u8, Failure> {
     Ok(read.unless_failed()?.print_skipped())
 }
 
-fn facts(recording: &Recording, source: &Source) -> Facts {
+/// The profile that finds all roles that are needed.
+fn profile(jointed: &Jointed<'_>) -> Option<String> {
+    let joints = jointed.recording.joints().iter();
+    let names: Vec<&str> = joints.map(|j| j.name.as_str()).collect();
+    let map = match &jointed.profile {
+        Some(given) => given.matched(&names),
+        None => RoleMap::detect(&names).ok()?,
+    };
+    map.missing().is_empty().then_some(map.profile)
+}
+
+fn facts(recording: &Recording, profile: Option<String>) -> Facts {
     // Rates are written as frame times of few digits: 1/0.0083333 means 120.
     let rounded = |value: f64| (1000.0 * value).round() / 1000.0;
-    let names: Vec<&str> = recording.joints().iter().map(|j| j.name.as_str()).collect();
-    let profile = match source.profile() {
-        Some(given) => Ok(given.matched(&names)),
-        None => RoleMap::detect(&names),
-    };
-    let profile = profile.ok().filter(|map| map.missing().is_empty());
     let from = recording.source();
     Facts {
         motion: recording.name().into(),
         format: from.format.name(),
-        joints: names.len(),
+        joints: recording.joints().len(),
         dof: recording.dof(),
         frames: recording.frames(),
         rate: rounded(recording.rate_hz()),
@@ -85,7 +92,7 @@ fn facts(recording: &Recording, source: &Source) -> Facts {
                 Axis::Z => "z",
             },
             unit: unit(from.unit_metres),
-            profile: profile.map_or("-".into(), |map| map.profile),
+            profile: profile.unwrap_or_else(|| "-".into()),
         },
     }
 }

@@ -1,11 +1,13 @@
 //! INPUT of every verb: read in parallel, told in order.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use kineme::retargeting::{Profile, retarget};
-use kineme::{Motion, Recording, Skeleton};
+use kineme::{Format, Motion, Recording, Skeleton};
+use kineme_formats::c3d::{Centred, joint_centres};
 use kineme_formats::input::{Entry, InputRates, Inputs, ReadOptions};
 use kineme_formats::{FormatError, Place};
 use rayon::prelude::*;
@@ -28,6 +30,16 @@ struct UserProfile {
     profile: Profile,
     up: Option<kineme::math::rotation::Axis>,
     unit_metres: Option<f64>,
+    /// Whether several names of a role are markers around its joint; a built-in profile's are other names of it.
+    surrounded: bool,
+}
+
+/// A recording in whose joints roles can be found.
+pub struct Jointed<'r> {
+    /// As it was read, or of markers the joints that they surround.
+    pub recording: Cow<'r, Recording>,
+    /// Which joint plays which role, where that is known.
+    pub profile: Option<Cow<'r, Profile>>,
 }
 
 /// What came of every motion, in the order of the inputs.
@@ -238,8 +250,27 @@ impl Source {
     }
 
     /// The profile of the command line.
-    pub fn profile(&self) -> Option<&Profile> {
+    fn profile(&self) -> Option<&Profile> {
         self.profile.as_ref().map(|u| &u.profile)
+    }
+
+    /// The joints of a recording: markers lie on the skin around them.
+    pub fn jointed<'r>(&'r self, recording: &'r Recording) -> Result<Jointed<'r>, Failure> {
+        let own = self.profile.as_ref();
+        if recording.source().format == Format::C3d && own.is_none_or(|user| user.surrounded) {
+            let centred = joint_centres(recording, self.profile())
+                .map_err(|e| Failure::unreadable(format!("{}: {e}", recording.name())))?;
+            if let Some(Centred { recording, profile }) = centred {
+                return Ok(Jointed {
+                    recording: Cow::Owned(recording),
+                    profile: Some(Cow::Owned(profile)),
+                });
+            }
+        }
+        Ok(Jointed {
+            recording: Cow::Borrowed(recording),
+            profile: own.map(|user| Cow::Borrowed(&user.profile)),
+        })
     }
 
     /// A recording in the joints of a body, and what there is to warn of.
@@ -248,7 +279,9 @@ impl Source {
         recording: &Recording,
         body: &Arc<Skeleton>,
     ) -> Result<(Motion, Vec<String>), Failure> {
-        let done = retarget(recording, body, self.profile())
+        let jointed = self.jointed(recording)?;
+        let recording = &*jointed.recording;
+        let done = retarget(recording, body, jointed.profile.as_deref())
             .map_err(|e| Failure::unreadable(format!("{}: {e}", recording.name())))?;
         let mut warnings = recording.source().warnings.clone();
         if done.profile == "guessed" {
@@ -360,6 +393,7 @@ fn profile(name: &str) -> Result<UserProfile, Failure> {
                 profile,
                 up: None,
                 unit_metres: None,
+                surrounded: false,
             });
         }
         Err(unknown) => unknown,
@@ -379,5 +413,6 @@ fn profile(name: &str) -> Result<UserProfile, Failure> {
         },
         up: read.up,
         unit_metres: read.unit_metres,
+        surrounded: true,
     })
 }

@@ -181,7 +181,11 @@ fn what_is_damaged_is_told_with_file_place_found_and_expected() {
         ("clip.json", whole(clip), "clip.json"),
         ("msr.txt", whole(&msr), "msr.txt"),
         ("alone.amc", whole(AMC), "no ASF"),
-        ("marker.c3d", vec![2, 0x50, 0, 0], "found C3D"),
+        (
+            "marker.c3d",
+            vec![2, 0x50, 0, 0],
+            "found 4 bytes that begin",
+        ),
         (
             "words.txt",
             whole("nothing of the kind\n"),

@@ -5,7 +5,7 @@ use kineme::Recording;
 use crate::error::{FormatError, Place, Result};
 use crate::tables::{body_angles, msr, positions};
 use crate::text::{Blame, Lines, number, quoted, words};
-use crate::{amc, asf, bvh, deepmimic};
+use crate::{amc, asf, bvh, c3d, deepmimic};
 
 /// Bytes from the beginning of a file that suffice to tell its format.
 pub const HEAD: usize = 1 << 16;
@@ -29,7 +29,7 @@ pub enum Kind {
     Msr,
     /// Joint-angle table, as `convert` writes it.
     Angles,
-    /// Marker file of the Biomechanics community; told, not read.
+    /// Marker file of biomechanics.
     C3d,
     /// Archive that acts as a folder.
     Zip,
@@ -89,6 +89,9 @@ fn by_content(head: &[u8]) -> Option<Kind> {
     if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
         return Some(Kind::Zip);
     }
+    if c3d::sniff(head) {
+        return Some(Kind::C3d);
+    }
     if head.starts_with(b"PAR1") {
         return Some(Kind::Angles);
     }
@@ -128,7 +131,7 @@ fn by_content(head: &[u8]) -> Option<Kind> {
 /// What a file of no motion format seems to be, and what would be right in its place.
 pub(crate) fn unknown(bytes: &[u8]) -> (String, String) {
     const MOTIONS: &str =
-        "BVH, AMC, DeepMimic JSON, a position or joint-angle table, or MSR-Action3D text";
+        "BVH, AMC, C3D, DeepMimic JSON, a position or joint-angle table, or MSR-Action3D text";
     // A safetensors container begins with the length of its header, which is JSON.
     if bytes.get(8..10) == Some(b"{\"") {
         let motion = "a motion; `kineme show` and `kineme view` look at vocabularies";
@@ -201,7 +204,7 @@ pub fn parse(
             name,
             Place::File,
             what,
-            "BVH, AMC, DeepMimic JSON, a position or joint-angle table, or MSR-Action3D text: this version does not \
+            "BVH, AMC, C3D, DeepMimic JSON, a position or joint-angle table, or MSR-Action3D text: this version does not \
              read it",
         ))
     };
@@ -217,7 +220,7 @@ pub fn parse(
         Kind::Msr => msr::parse(name, bytes, rate_hz),
         Kind::Angles if bytes.starts_with(b"PAR1") => unread("Parquet"),
         Kind::Angles => body_angles::parse(name, bytes),
-        Kind::C3d => unread("C3D"),
+        Kind::C3d => c3d::parse(name, bytes),
         Kind::Zip => Err(Blame(name).file("an archive inside an archive", "a motion")),
     }
 }

@@ -27,6 +27,7 @@
 pub mod amc;
 pub mod asf;
 pub mod bvh;
+pub mod c3d;
 pub mod deepmimic;
 pub mod detect;
 mod document;

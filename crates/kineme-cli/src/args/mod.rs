@@ -111,7 +111,8 @@ pub struct ReadArgs {
     /// Frame rate of files that do not say it: HZ, or amc=HZ,positions=HZ,msr=HZ
     #[arg(long, value_name = "HZ|FORMAT=HZ,...", allow_negative_numbers = true, value_parser = InputRates::from_str)]
     pub input_rate: Option<InputRates>,
-    /// Which joint is which, where the names are not recognised: a built-in profile, or a TOML file
+    /// Which joint is which, where the names are not recognised: a built-in profile, or a TOML file; of markers (C3D) a
+    /// file's role lists those that surround its joint
     #[arg(long, value_name = "NAME|FILE")]
     pub profile: Option<String>,
 }

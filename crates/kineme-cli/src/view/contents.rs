@@ -42,13 +42,15 @@ pub fn of_motions(args: &ViewArgs) -> Result<(Page, u8), Failure> {
             }
             None => (None, recording.source().warnings.clone()),
         };
-        let names: Vec<&str> = recording.joints().iter().map(|j| j.name.as_str()).collect();
-        let roles = match source.profile() {
+        let jointed = source.jointed(&recording)?;
+        let joints = jointed.recording.joints().iter();
+        let names: Vec<&str> = joints.map(|j| j.name.as_str()).collect();
+        let roles = match &jointed.profile {
             Some(given) => Some(given.matched(&names)),
             None => RoleMap::detect(&names).ok(),
         };
         Ok(Taken {
-            recording,
+            recording: jointed.recording.into_owned(),
             roles,
             motion,
             warnings,

@@ -7,4 +7,4 @@ pub mod msr;
 pub mod observed;
 pub mod positions;
 mod timebase;
-mod upright;
+pub(crate) mod upright;

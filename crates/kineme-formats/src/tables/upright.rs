@@ -9,7 +9,7 @@ const LOW: [&[&str]; 2] = [&["foot", "feet", "ankle", "toe"], &["hip", "pelvis"]
 
 /// The upward axis, y or z, of frames of `names.len()` points: the larger of the two in the mean of head
 /// minus feet (neck or shoulders, hips, where those are not there). Says what it took.
-pub(super) fn detect(
+pub(crate) fn detect(
     names: &[&str],
     points: &[Option<Vector3<f64>>],
     warnings: &mut Vec<String>,

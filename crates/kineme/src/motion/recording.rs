@@ -14,6 +14,8 @@ pub enum Format {
     AsfAmc,
     /// DeepMimic clip.
     DeepMimic,
+    /// Markers of a C3D file.
+    C3d,
     /// Table of joint positions.
     PositionTable,
     /// MSR-Action3D skeleton text.
@@ -31,6 +33,7 @@ impl Format {
             Format::Bvh => "bvh",
             Format::AsfAmc => "asf/amc",
             Format::DeepMimic => "deepmimic",
+            Format::C3d => "c3d",
             Format::PositionTable => "positions",
             Format::MsrAction3d => "msr-action3d",
             Format::AngleTable => "angles",
