@@ -8,6 +8,7 @@ use kineme_formats::input::Entry;
 use kineme_formats::positions::Frame;
 use kineme_formats::tables::body_angles;
 use kineme_formats::{bvh, npz, output, positions};
+use kineme_paper::figures::counted;
 use serde_json::json;
 
 use crate::args::{ConvertArgs, Global, Written};
@@ -146,7 +147,10 @@ fn tell(written: &[(Made, PathBuf)], global: &Global) -> Result<(), Failure> {
             text.push_str(&format!("{line}\n"));
         } else {
             let rate = (1000.0 * made.rate_hz).round() / 1000.0;
-            text.push_str(&format!("{out}: {} frames at {rate} Hz\n", made.frames));
+            text.push_str(&format!(
+                "{out}: {} at {rate} Hz\n",
+                counted(made.frames, "frame")
+            ));
         }
     }
     print(text.as_bytes())

@@ -237,16 +237,21 @@ impl Source {
         let Some(user) = &self.profile else {
             return Ok(recording);
         };
-        let source = recording.source();
+        let mut source = recording.source().clone();
         let up = user.up.unwrap_or(source.up);
         let unit = user.unit_metres.unwrap_or(source.unit_metres);
-        if (up, unit) == (source.up, source.unit_metres) {
-            return Ok(recording);
+        let same = (up, unit) == (source.up, source.unit_metres);
+        // Whoever says it need not be told what the reader took it for.
+        if user.up.is_some() {
+            source.warnings.retain(|w| !w.starts_with("up axis:"));
         }
         let name = recording.name().to_owned();
-        recording
-            .reread(up, unit)
-            .map_err(|e| Failure::unreadable(format!("{name}: {e}")))
+        let refused = |e: kineme::Error| Failure::unreadable(format!("{name}: {e}"));
+        let recording = recording.with_source(source).map_err(refused)?;
+        match same {
+            true => Ok(recording),
+            false => recording.reread(up, unit).map_err(refused),
+        }
     }
 
     /// The profile of the command line.

@@ -7,6 +7,7 @@ use kineme::control::{Entry, Manner, Pace, State, Synthesis};
 use kineme::primitive::Reached;
 use kineme::{Primitive, Skeleton};
 use kineme_formats::output;
+use kineme_paper::figures::counted;
 use nalgebra::Vector3;
 use serde::Serialize;
 
@@ -97,7 +98,12 @@ pub fn run(args: &SynthesizeArgs, global: &Global) -> Result<u8, Failure> {
         manner,
         ..Synthesis::default()
     };
-    let made = synthesis.motion(primitive.name(), &course)?;
+    let made = synthesis
+        .motion(primitive.name(), &course)
+        .map_err(|e| match args.duration {
+            Some(_) if e.is_invalid() => Failure::usage(format!("--duration: {e}")),
+            _ => e.into(),
+        })?;
     let motion = &made.motion;
     if made.limited_frames > 0 {
         complain(&format!(
@@ -152,11 +158,11 @@ fn text(
         parameters => format!(" at {}", named(primitive, parameters)),
     };
     Ok(format!(
-        "{}: {}{with}, {:.2} s, {} frames at {} Hz\n",
+        "{}: {}{with}, {:.2} s, {} at {} Hz\n",
         out.display(),
         told.primitive,
         told.duration,
-        told.frames,
+        counted(told.frames, "frame"),
         short(told.rate)
     ))
 }

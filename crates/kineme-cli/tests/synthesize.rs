@@ -338,8 +338,8 @@ fn what_cannot_be_is_refused_with_the_right_code_and_a_word_on_it() {
         ),
         (
             "synthesize punching.kineme punch-out -o x.bvh --duration 1e9",
-            1,
-            "pace",
+            2,
+            "--duration: a movement of",
         ),
         (
             "synthesize punching.kineme punch-out -o x.bvh --from-pose no.bvh",

@@ -151,9 +151,9 @@ fn take(scene: &mut Scene, taken: &Taken, most_hz: f64) -> Take {
 
 fn facts(recording: &Recording) -> String {
     format!(
-        "{} joints, {} frames at {} Hz, {:.2} s ({}).",
-        recording.joints().len(),
-        recording.frames(),
+        "{}, {} at {} Hz, {:.2} s ({}).",
+        counted(recording.joints().len(), "joint"),
+        counted(recording.frames(), "frame"),
         short(recording.rate_hz()),
         recording.duration_secs(),
         recording.source().format.name()

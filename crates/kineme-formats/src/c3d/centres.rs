@@ -2,32 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use kineme::math::rotation::shortest;
-use kineme::math::statistics::median;
 use kineme::retargeting::{Profile, REQUIRED};
 use kineme::{Error, Observed, RecordedJoint, Recording, Role};
-use nalgebra::Vector3;
 
 use super::marker;
-use super::marker_sets::{Knob, MarkerSet, Side, plain};
-
-type Point = Option<Vector3<f64>>;
-type Path = Vec<Point>;
-
-/// From a marker outside a hinge to the hinge's centre, in widths of the pelvis between its front markers: half an adult's
-/// breadth of elbow, knee and ankle, and half a marker.
-const ELBOW: f64 = 0.18;
-const KNEE: f64 = 0.23;
-const ANKLE: f64 = 0.18;
-
-/// From the acromion down to the shoulder's centre, in distances of the two acromions (Rab et al. 2002).
-const SHOULDER: f64 = 0.17;
-
-/// Sine of the bend (15 degrees) from which on a hinge shows about which axis it turns.
-const BENT: f64 = 0.26;
-
-/// How often axis and centre are told from each other; they settle within two or three.
-const ROUNDS: usize = 4;
+use super::marker_sets::{MarkerSet, plain};
+use super::model::joints;
+use super::places::{Path, Places};
 
 /// The centres of joints as a recording, and which of them plays which role.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +37,7 @@ pub fn joint_centres(
         return Err(Error::invalid("markers are positions, found rotations"));
     };
     let names: Vec<&str> = recording.joints().iter().map(|j| j.name.as_str()).collect();
-    let markers = Markers {
+    let markers = Places {
         seen,
         count: names.len(),
         frames: recording.frames(),
@@ -64,7 +45,7 @@ pub fn joint_centres(
     let (name, paths) = match profile {
         Some(profile) => (profile.name.clone(), listed(&markers, &names, profile)?),
         None => match MarkerSet::of(&names) {
-            Some(set) => ("conventional-gait-model".into(), modelled(&markers, &set)),
+            Some(set) => ("conventional-gait-model".into(), joints(&markers, &set)),
             None => return Ok(None),
         },
     };
@@ -109,7 +90,7 @@ fn parent(role: Role, before: &[Role]) -> Option<usize> {
 
 /// Midway between the markers that a profile lists.
 fn listed(
-    markers: &Markers<'_>,
+    markers: &Places<'_>,
     names: &[&str],
     profile: &Profile,
 ) -> kineme::Result<BTreeMap<Role, Path>> {
@@ -141,275 +122,4 @@ fn listed(
         }
     }
     Ok(paths)
-}
-
-/// The joints of the conventional gait model.
-fn modelled(markers: &Markers<'_>, set: &MarkerSet) -> BTreeMap<Role, Path> {
-    use Role::*;
-    let neck = markers.middle(&set.neck);
-    let mut paths = BTreeMap::new();
-    for (role, of) in [(Head, &set.head), (Chest, &set.chest)] {
-        if !of.is_empty() {
-            paths.insert(role, markers.middle(of));
-        }
-    }
-    let pelvis = Pelvis::of(markers, set);
-    let shoulders = markers.distance(set.left.shoulder, set.right.shoulder);
-    let hips = [1.0, -1.0].map(|left| pelvis.hip(left));
-    let arms = [&set.left, &set.right].map(|side| {
-        each(markers.frames, |f| {
-            let down = (pelvis.middle[f]? - neck[f]?).try_normalize(1e-9)?;
-            Some(markers.at(f, side.shoulder)? + SHOULDER * shoulders * down)
-        })
-    });
-    let roles = [
-        [
-            LeftUpperArm,
-            LeftLowerArm,
-            LeftHand,
-            LeftFingers,
-            LeftUpperLeg,
-            LeftLowerLeg,
-            LeftFoot,
-            LeftToes,
-        ],
-        [
-            RightUpperArm,
-            RightLowerArm,
-            RightHand,
-            RightFingers,
-            RightUpperLeg,
-            RightLowerLeg,
-            RightFoot,
-            RightToes,
-        ],
-    ];
-    for (k, side) in [&set.left, &set.right].into_iter().enumerate() {
-        let other = 1 - k;
-        let right = if k == 1 { 1.0 } else { -1.0 };
-        let mut limb = Limb {
-            markers,
-            hinge: side.elbow,
-            reach: ELBOW * pelvis.width,
-            end_reach: 0.0,
-            bend: right,
-        };
-        let wrist = markers.middle(&side.wrist);
-        let (elbow, _) = limb.centre(&arms[k], &arms[other], &wrist);
-        let mut own = vec![Some(arms[k].clone()), Some(elbow)];
-        own.push((!side.wrist.is_empty()).then_some(wrist));
-        own.push(side.fingers.map(|m| markers.middle(&[m])));
-        own.push(Some(hips[k].clone()));
-        own.extend(leg(&mut limb, side, &hips[k], &hips[other], &pelvis, right));
-        own.push(side.toes.map(|m| markers.middle(&[m])));
-        let own = roles[k].into_iter().zip(own);
-        paths.extend(own.filter_map(|(role, path)| Some((role, path?))));
-    }
-    paths.insert(Hips, pelvis.middle);
-    paths.insert(Neck, neck);
-    paths
-}
-
-/// Knee and ankle.
-fn leg<'m>(
-    limb: &mut Limb<'m>,
-    side: &Side,
-    hip: &[Point],
-    other: &[Point],
-    pelvis: &Pelvis,
-    right: f64,
-) -> [Option<Path>; 2] {
-    let Some(knee) = side.knee else {
-        return [None, None];
-    };
-    let markers = limb.markers;
-    let marked = side.ankle.map(|a| markers.middle(&a.marked()));
-    // Knees bend the other way.
-    *limb = Limb {
-        markers,
-        hinge: knee,
-        reach: KNEE * pelvis.width,
-        end_reach: match side.ankle {
-            Some(Knob { inner: None, .. }) => ANKLE * pelvis.width,
-            _ => 0.0,
-        },
-        bend: -right,
-    };
-    let unseen = vec![None; markers.frames];
-    let (knee, axis) = limb.centre(hip, other, marked.as_deref().unwrap_or(&unseen));
-    let ankle = marked.map(|ends| {
-        each(markers.frames, |f| {
-            let end = ends[f]?;
-            Some(inward(&knee[f]?, &end, &axis[f]?, limb.end_reach))
-        })
-    });
-    [Some(knee), ankle]
-}
-
-/// Front and back of the pelvis, and how wide and deep it is.
-struct Pelvis {
-    /// Midway between the four markers.
-    middle: Path,
-    /// Of each frame the middle of the front, and the axes: forward, left, up.
-    frames: Vec<Option<[Vector3<f64>; 4]>>,
-    width: f64,
-    depth: f64,
-}
-
-impl Pelvis {
-    fn of(markers: &Markers<'_>, set: &MarkerSet) -> Self {
-        let (left, right) = (&set.left, &set.right);
-        let front = markers.middle(&[left.front, right.front]);
-        let back = markers.middle(&[left.back, right.back]);
-        let depths = front.iter().zip(&back);
-        let depths: Vec<f64> = depths
-            .filter_map(|(a, b)| Some(((*a)? - (*b)?).norm()))
-            .collect();
-        let frames = (0..markers.frames).map(|f| {
-            let (front, back) = (front[f]?, back[f]?);
-            let across = markers.at(f, left.front)? - markers.at(f, right.front)?;
-            let left = across.try_normalize(1e-9)?;
-            let ahead = front - back;
-            let ahead = (ahead - left * left.dot(&ahead)).try_normalize(1e-9)?;
-            Some([front, ahead, left, ahead.cross(&left)])
-        });
-        Self {
-            middle: each(markers.frames, |f| Some(0.5 * (front[f]? + back[f]?))),
-            frames: frames.collect(),
-            width: markers.distance(left.front, right.front),
-            depth: median(&depths).unwrap_or(0.0),
-        }
-    }
-
-    /// The centre of a hip from width and depth of the pelvis (Harrington et al. 2007); `left` is 1 or -1.
-    fn hip(&self, left: f64) -> Path {
-        let back = -0.24 * self.depth - 0.0099;
-        let down = -0.30 * self.width - 0.0109;
-        let aside = left * (0.33 * self.width + 0.0073);
-        let at = |frame: &Option<[Vector3<f64>; 4]>| {
-            let [front, x, y, z] = (*frame)?;
-            Some(front + back * x + aside * y + down * z)
-        };
-        self.frames.iter().map(at).collect()
-    }
-}
-
-/// A limb whose hinge is marked.
-struct Limb<'m> {
-    markers: &'m Markers<'m>,
-    hinge: Knob,
-    /// From the marker outside to the centre, metres.
-    reach: f64,
-    /// From the marker at the limb's end to the centre there, metres; 0 where it is a centre.
-    end_reach: f64,
-    /// 1 where the limb bends about the axis that points inward, from above the hinge to below it: at the right elbow and
-    /// the left knee; at the others -1.
-    bend: f64,
-}
-
-impl Limb<'_> {
-    /// The hinge's centre, and the direction inward along its axis. `root` is where the limb begins, `other` where the
-    /// other side's does, `end` where it ends.
-    ///
-    /// A bent limb shows the axis; a straight one carries along that of the frame before, as it swings without turning; at
-    /// first as if it had hung and the axis pointed to the other side.
-    fn centre(&self, root: &[Point], other: &[Point], end: &[Point]) -> (Path, Path) {
-        let mut before: Option<[Vector3<f64>; 2]> = None;
-        let mut axes = vec![None; self.markers.frames];
-        let centres = each(self.markers.frames, |f| {
-            let outer = self.markers.at(f, self.hinge.outer)?;
-            let root = root[f]?;
-            let limb = (outer - root).try_normalize(1e-9)?;
-            let mut axis = match (self.hinge.inner, before) {
-                (Some(inner), _) => (self.markers.at(f, inner)? - outer).try_normalize(1e-9)?,
-                (None, Some([limb_before, axis])) => shortest(&limb_before, &limb) * axis,
-                (None, None) => {
-                    let hung = -Vector3::z();
-                    shortest(&hung, &limb) * (other[f]? - root).try_normalize(1e-9)?
-                }
-            };
-            let mut centre = match self.hinge.inner {
-                Some(inner) => 0.5 * (outer + self.markers.at(f, inner)?),
-                None => inward(&root, &outer, &axis, self.reach),
-            };
-            // The bend is that of the centres, which the axis moves a little.
-            let rounds = if self.hinge.inner.is_some() {
-                0
-            } else {
-                ROUNDS
-            };
-            for _ in 0..rounds {
-                let Some(end) = end[f] else { break };
-                let end = inward(&centre, &end, &axis, self.end_reach);
-                let up = (root - centre).try_normalize(1e-9);
-                let down = (end - centre).try_normalize(1e-9);
-                let Some((up, down)) = up.zip(down) else {
-                    break;
-                };
-                let Some(shown) = (self.bend * up.cross(&down)).try_normalize(BENT) else {
-                    break;
-                };
-                axis = shown;
-                centre = inward(&root, &outer, &axis, self.reach);
-            }
-            before = Some([limb, axis]);
-            axes[f] = Some(axis);
-            Some(centre)
-        });
-        (centres, axes)
-    }
-}
-
-/// From a marker outside a hinge so far inward, square to the limb that begins at `root`; the marker itself where that is
-/// nowhere.
-fn inward(
-    root: &Vector3<f64>,
-    outer: &Vector3<f64>,
-    axis: &Vector3<f64>,
-    reach: f64,
-) -> Vector3<f64> {
-    let limb = root - outer;
-    let share = reach / limb.norm().max(1e-9);
-    let along = limb.try_normalize(1e-9).unwrap_or_else(Vector3::z);
-    match (axis - along * along.dot(axis)).try_normalize(1e-9) {
-        Some(square) if share < 1.0 => {
-            outer + reach * (share * along + (1.0 - share * share).sqrt() * square)
-        }
-        _ => *outer,
-    }
-}
-
-/// The places of all markers, frame by frame, metres.
-struct Markers<'r> {
-    seen: &'r [Point],
-    count: usize,
-    frames: usize,
-}
-
-impl Markers<'_> {
-    fn at(&self, frame: usize, marker: usize) -> Point {
-        self.seen[frame * self.count + marker]
-    }
-
-    /// Midway between markers, where all of them are seen.
-    fn middle(&self, of: &[usize]) -> Path {
-        each(self.frames, |f| {
-            let mut sum = Vector3::zeros();
-            for marker in of {
-                sum += self.at(f, *marker)?;
-            }
-            (!of.is_empty()).then(|| sum / of.len() as f64)
-        })
-    }
-
-    /// The median distance of two markers.
-    fn distance(&self, a: usize, b: usize) -> f64 {
-        let apart = |f| Some((self.at(f, a)? - self.at(f, b)?).norm());
-        let apart: Vec<f64> = (0..self.frames).filter_map(apart).collect();
-        median(&apart).unwrap_or(0.0)
-    }
-}
-
-fn each(frames: usize, at: impl FnMut(usize) -> Point) -> Path {
-    (0..frames).map(at).collect()
 }

@@ -6,7 +6,9 @@
 
 mod centres;
 mod marker_sets;
+mod model;
 mod parameters;
+mod places;
 
 use kineme::math::rotation::Axis;
 use kineme::{Format, Observed, RecordedJoint, Recording, Source};

@@ -56,7 +56,7 @@ pub(crate) fn detect(
         warnings.push(format!("{letter} points down: the body is upside down"));
     }
     if along.abs() < 0.5 * long.norm() {
-        warnings.push("up axis in doubt: the body lies".to_string());
+        warnings.push("up axis: in doubt, the body lies".to_string());
     }
     const STATURES_METRES: std::ops::RangeInclusive<f64> = 0.2..=4.0;
     if !STATURES_METRES.contains(&long.norm()) {

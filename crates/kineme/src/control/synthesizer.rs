@@ -175,9 +175,15 @@ impl Synthesizer {
         };
         if !SPEEDS.contains(&speed) {
             return Err(Error::invalid(format!(
-                "a course is run at {} to {} times its own pace, not at {speed:.3}",
+                "a movement of {left_secs:.2} s is run at {} to {} times its own pace, {:.2} to {:.0} s, not at {}",
                 SPEEDS.start(),
-                SPEEDS.end()
+                SPEEDS.end(),
+                left_secs / SPEEDS.end(),
+                left_secs / SPEEDS.start(),
+                match manner.pace {
+                    Pace::Times(_) => format!("{speed} times"),
+                    Pace::Secs(secs) => format!("{secs} s"),
+                }
             )));
         }
         let whole = left_secs / speed;
