@@ -130,6 +130,24 @@ fn a_urdf_is_the_robot_that_the_same_mjcf_is() {
     );
 }
 
+/// A robot's links carry frames of sensors, which are listed where it pleases those who wrote the file.
+#[test]
+fn a_bone_ends_where_the_next_part_that_moves_begins() {
+    let wrist = "<joint name=\"left_wrist\"";
+    let camera = joint(
+        "eye",
+        "fixed",
+        "left_forearm",
+        "camera",
+        "<origin xyz='0 0 0.1'/>",
+    );
+    let seeing = ROBOT.replacen(wrist, &format!("<link name='camera'/>{camera}{wrist}"), 1);
+    let [plain, seeing] = [ROBOT, &seeing].map(|text| robot(text).skeleton);
+    let tip = |body: &Skeleton| body.joints()[body.joint("left_elbow").expect("an elbow")].tip;
+    assert!((tip(&plain) - tip(&seeing)).norm() < 1e-9);
+    assert_eq!(seeing.joints().len(), plain.joints().len() + 1);
+}
+
 #[test]
 fn what_an_engine_is_given_is_the_same_robot() {
     for text in [ROBOT, HINGE] {

@@ -114,10 +114,12 @@ fn the_engine_reads_the_same_robot_from_the_file_itself() {
         // Masses and inertias: what moves the hinges, and what gravity does to them.
         for (i, (j, k)) in a.iter().zip(&b).enumerate() {
             let weight = one.qfrc_bias()[*j] - other.qfrc_bias()[*k];
-            assert!(weight.abs() < 1e-6, "{}: {weight} N m", joints[i]);
+            // Where a milligram is that the file does not place, the two need not agree: 5e-6 N m and 2.5e-7 kg m^2 at
+            // half a metre.
+            assert!(weight.abs() < 1e-5, "{}: {weight} N m", joints[i]);
             for (p, q) in a.iter().zip(&b) {
                 let entry = m[j * 3 + p] - n[k * 3 + q];
-                assert!(entry.abs() < 1e-7, "{} {entry} kg m^2", joints[i]);
+                assert!(entry.abs() < 5e-7, "{} {entry} kg m^2", joints[i]);
             }
         }
     }
