@@ -181,11 +181,11 @@ fn range(sources: &Sources<'_>, limit: Node<'_, '_>) -> Result<Range> {
     }
     Ok(Range {
         low: match lower < -GREATEST {
-            true => upper.min(0.0).max(-GREATEST) - TURN,
+            true => upper.clamp(-GREATEST, 0.0) - TURN,
             false => lower.min(GREATEST),
         },
         high: match upper > GREATEST {
-            true => lower.max(0.0).min(GREATEST) + TURN,
+            true => lower.clamp(0.0, GREATEST) + TURN,
             false => upper.max(-GREATEST),
         },
     })
