@@ -1,17 +1,17 @@
-//! The bodies that `--body` names: built-in ones, and robots of MJCF files.
+//! The bodies that `--body` names: built-in ones, and robots of MJCF and URDF files.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use kineme::Skeleton;
-use kineme_formats::mjcf;
+use kineme_formats::robot::{self, RobotModel};
 
 use crate::failure::{Failure, complain};
 
 /// Whether a name is that of a robot's file.
 pub fn is_robot(name: &str) -> bool {
     let lower = name.to_ascii_lowercase();
-    let known = [".xml", ".mjcf", ".urdf"];
+    let known = [".xml", ".mjcf", ".urdf", ".xacro"];
     known.iter().any(|end| lower.ends_with(end))
 }
 
@@ -36,14 +36,8 @@ pub fn any(name: &str) -> Result<Arc<Skeleton>, Failure> {
 }
 
 /// The robot of a file; tells what was passed over, and where its roles come from when they were guessed.
-pub fn robot(name: &str) -> Result<mjcf::RobotModel, Failure> {
-    if name.to_ascii_lowercase().ends_with(".urdf") {
-        return Err(Failure::usage(format!(
-            "`{name}`: robots are read from MJCF, not from URDF"
-        ))
-        .hint("MuJoCo opens a URDF file and saves it as MJCF"));
-    }
-    let robot = mjcf::read(Path::new(name), None)?;
+pub fn robot(name: &str) -> Result<RobotModel, Failure> {
+    let robot = robot::read(Path::new(name), None)?;
     for warning in &robot.warnings {
         complain(&format!("note: {name}: {warning}"));
     }

@@ -52,7 +52,7 @@ fn exit_codes_say_what_went_wrong_and_hints_what_to_do() {
         ("show arms.bvh", 3, "arms.bvh: found another kind of file"),
         ("derive arms.bvh -o v --body zeus", 2, "nearest: `ares`"),
         ("derive arms.bvh -o v --body g1.xml", 2, "hint: --body ares"),
-        ("convert arms.bvh a.csv --body g1.urdf", 2, "hint: MuJoCo"),
+        ("convert arms.bvh a.csv --body no.urdf", 3, "no.urdf"),
         ("convert arms.bvh a.csv --body no.xml", 3, "no.xml"),
         ("derive arms.bvh -o - --json", 2, "stdout"),
         ("derive arms.bvh -o v --marks no.csv", 3, "no.csv"),

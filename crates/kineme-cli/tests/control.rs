@@ -3,6 +3,7 @@
 mod common;
 
 use std::fs;
+use std::path::Path;
 
 use common::{done, json, kineme, vocabularies, with_input};
 
@@ -139,5 +140,56 @@ fn what_a_plan_may_not_ask_for_is_refused_with_its_line_before_anything_moves() 
         );
         assert!(run.err.contains(says), "{new}: {}", run.err);
         assert!(!at.join("x.bvh").exists());
+    }
+}
+
+#[test]
+fn a_robot_of_a_urdf_file_does_what_it_is_told() {
+    let folder = vocabularies();
+    let at = folder.path();
+    let urdf =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../kineme-formats/tests/common/small.urdf");
+    fs::copy(&urdf, at.join("small.urdf")).expect("a robot");
+    // What a file is its content says.
+    fs::copy(&urdf, at.join("small.xml")).expect("a robot");
+    fs::write(at.join("wave.toml"), WAVE).expect("a plan");
+    let line = "control horizontal-waving.kineme wave.toml --body small.urdf --json";
+    let told = json(at, line);
+    assert_eq!((&told["body"], &told["dof"]), (&"small".into(), &11.into()));
+    assert_eq!(told["physics"], cfg!(feature = "sim"));
+    let rms = told["tracking_rms_rad"].as_f64().expect("a number");
+    assert!((0.0..0.05).contains(&rms), "{rms}");
+    assert_eq!(json(at, &line.replace(".urdf", ".xml")), told);
+    let run = done(
+        at,
+        "control horizontal-waving.kineme wave.toml --body small.urdf",
+    );
+    for note in ["parts guessed from names", "next to none"] {
+        assert!(run.err.contains(note), "{}", run.err);
+    }
+    // Elsewhere a robot is a body like any other, and a file that is none is told by its line.
+    done(
+        at,
+        "synthesize horizontal-waving.kineme wave-across -o wave.bvh",
+    );
+    done(at, "convert wave.bvh angles.csv --body small.urdf");
+    let rows = fs::read_to_string(at.join("angles.csv")).expect("a table");
+    assert!(
+        rows.lines()
+            .next()
+            .is_some_and(|l| l.contains("left_elbow")),
+        "{rows}"
+    );
+    let macros = "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'>\n<xacro:include filename='a'/></robot>";
+    for name in ["robot.xacro", "robot.urdf.xacro", "robot.urdf"] {
+        fs::write(at.join(name), macros).expect("a file");
+        let line = format!("convert wave.bvh other.csv --body {name}");
+        let run = kineme(at, &line.split(' ').collect::<Vec<_>>());
+        assert_eq!(run.code, 3, "{}", run.err);
+        assert!(
+            run.err.contains(&format!("{name}:2")) && run.err.contains("run xacro"),
+            "{}",
+            run.err
+        );
     }
 }

@@ -8,62 +8,24 @@ use kineme::choreography::perform;
 use kineme::retargeting::Transfer;
 use kineme::skeleton::JointKind;
 use kineme::{Role, Root, Skeleton, ares};
-use kineme_formats::mjcf::{self, RobotModel};
+use kineme_formats::robot::{self as robots, RobotModel};
 use kineme_formats::{FormatError, Place, Result, profile};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 /// A small robot that stands with its arms out and its elbows bent, written in degrees and with classes.
-const ROBOT: &str = r#"<mujoco model="small">
-  <compiler angle="degree" eulerseq="XYZ"/>
-  <default>
-    <joint range="-170 170"/>
-    <default class="side"><joint axis="1 0 0"/>
-      <default class="bend"><joint axis="0 1 0" range="-100 150"/></default>
-    </default>
-  </default>
-  <worldbody>
-    <geom type="plane" size="1 1 1"/>
-    <body name="pelvis" pos="0 0 1">
-      <freejoint name="float"/>
-      <inertial pos="0 0 0.1" mass="5" diaginertia="0.1 0.2 0.3"/>
-      <body name="trunk" pos="0 0 0.1">
-        <joint name="waist_yaw"/>
-        <inertial pos="0 0 0.2" euler="0 0 90" mass="10" diaginertia="0.1 0.2 0.3"/>
-        <body name="head_shell" pos="0 0 0.6"/>
-        <body name="left_upper_arm" pos="0 0.2 0.5" childclass="side">
-          <joint name="left_shoulder_pitch" axis="0 1 0"/>
-          <joint name="left_shoulder_roll" ref="10"/>
-          <joint name="left_shoulder_yaw" axis="0 1 0"/>
-          <body name="left_forearm" pos="0 0.3 0" euler="90 0 0">
-            <joint name="left_elbow" class="bend"/>
-            <body name="left_palm" pos="0.25 0 0"><joint name="left_wrist" axis="1 0 0"/></body>
-          </body>
-        </body>
-        <body name="right_upper_arm" pos="0 -0.2 0.5" childclass="side">
-          <joint name="right_shoulder_pitch" axis="0 1 0"/>
-          <joint name="right_shoulder_roll"/>
-          <joint name="right_shoulder_yaw" axis="0 1 0"/>
-          <body name="right_forearm" pos="0 -0.3 0" quat="0.70710678 -0.70710678 0 0">
-            <joint name="right_elbow" class="bend"/>
-            <body name="right_palm" pos="0.25 0 0"><joint name="right_wrist" axis="1 0 0"/></body>
-          </body>
-        </body>
-      </body>
-    </body>
-  </worldbody>
-</mujoco>"#;
+const ROBOT: &str = include_str!("common/small.xml");
 
 fn alone(file: &str) -> Result<Vec<u8>> {
     Err(FormatError::new(file, Place::File, "nothing", "a file"))
 }
 
 fn robot(text: &str) -> RobotModel {
-    mjcf::parse("small.xml", text.as_bytes(), &alone, None).unwrap_or_else(|e| panic!("{e}"))
+    robots::parse("small.xml", text.as_bytes(), &alone, None).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn refused(text: &str) -> FormatError {
-    match mjcf::parse("small.xml", text.as_bytes(), &alone, None) {
+    match robots::parse("small.xml", text.as_bytes(), &alone, None) {
         Ok(robot) => panic!("read as {robot:?}"),
         Err(error) => error,
     }
@@ -287,32 +249,32 @@ fn a_model_may_include_files_and_a_profile_may_stand_beside_it() {
     fs::write(at("small.xml"), main).expect("a file");
     let defaults = format!("<mujocoinclude>\n  <default>{defaults}</mujocoinclude>");
     fs::write(at("defaults.xml"), &defaults).expect("a file");
-    let included = mjcf::read(&at("small.xml"), None).unwrap_or_else(|e| panic!("{e}"));
+    let included = robots::read(&at("small.xml"), None).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(included.skeleton, robot(ROBOT).skeleton);
 
     let profile = "name = \"mine\"\n[roles]\nchest = \"waist_yaw\"\nhead = \"head_shell\"\n\
                    left_upper_arm = [\"left_shoulder_pitch\", \"left_shoulder_roll\", \"left_shoulder_yaw\"]\n";
     fs::write(at("small.toml"), profile).expect("a file");
-    let named = mjcf::read(&at("small.xml"), None).unwrap_or_else(|e| panic!("{e}"));
+    let named = robots::read(&at("small.xml"), None).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(named.profile, "mine");
     assert_eq!(named.skeleton.joints_of(Role::LeftUpperArm).len(), 3);
     assert_eq!(named.skeleton.joints_of(Role::Head).len(), 1);
     assert!(named.skeleton.joints_of(Role::RightUpperArm).is_empty());
 
     let strange = profile::parse("p", b"name = 'p'\n[roles]\nhead = 'nose'").expect("a profile");
-    let error = mjcf::read(&at("small.xml"), Some(&strange)).expect_err("no such joint");
+    let error = robots::read(&at("small.xml"), Some(&strange)).expect_err("no such joint");
     assert!(error.found.contains("`nose`"), "{error}");
 
     let broken = defaults.replacen("axis=\"1 0 0\"", "axis=\"1 0\"", 1);
     fs::write(at("defaults.xml"), broken).expect("a file");
     fs::remove_file(at("small.toml")).expect("a file");
-    let error = mjcf::read(&at("small.xml"), None).expect_err("a short axis");
+    let error = robots::read(&at("small.xml"), None).expect_err("a short axis");
     assert!(error.found.contains("axis = `1 0`"), "{error}");
     fs::remove_file(at("defaults.xml")).expect("a file");
-    let error = mjcf::read(&at("small.xml"), None).expect_err("no defaults");
+    let error = robots::read(&at("small.xml"), None).expect_err("no defaults");
     assert!(error.file.ends_with("defaults.xml"), "{error}");
     let twice = "<mujoco><include file='a'/><include file='a'/></mujoco>";
-    let found = mjcf::parse("m", twice.as_bytes(), &|_| Ok(b"<a/>".to_vec()), None);
+    let found = robots::parse("m", twice.as_bytes(), &|_| Ok(b"<a/>".to_vec()), None);
     assert!(found.expect_err("twice").found.contains("second include"));
 }
 
@@ -324,7 +286,7 @@ proptest! {
         if cut {
             bytes.truncate(at);
         }
-        let _ = mjcf::parse("damaged", &bytes, &alone, None);
+        let _ = robots::parse("damaged", &bytes, &alone, None);
     }
 }
 
@@ -336,7 +298,7 @@ fn g1() -> Option<RobotModel> {
         println!("skipped: no Unitree G1; cargo xtask setup --robots fetches it");
         return None;
     }
-    Some(mjcf::read(&path, None).unwrap_or_else(|e| panic!("{e}")))
+    Some(robots::read(&path, None).unwrap_or_else(|e| panic!("{e}")))
 }
 
 #[test]

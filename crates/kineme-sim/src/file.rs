@@ -1,10 +1,10 @@
-//! [`RobotFile`]: a robot that an MJCF file describes, and how it is made ready to be driven.
+//! [`RobotFile`]: a robot that a file describes, and how it is made ready to be driven.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use kineme::{Error, Result, Skeleton};
-use kineme_formats::mjcf::RobotModel;
+use kineme_formats::robot::RobotModel;
 use mujoco_rs::mujoco_c::{mjtDisableBit, mjtIntegrator, mjtTrn};
 use mujoco_rs::prelude::{MjModel, MjSpec, SpecElement, SpecObject};
 use mujoco_rs::wrappers::mj_editing::MjtLimited;
@@ -13,11 +13,13 @@ use mujoco_rs::wrappers::mj_model::{MjtBias, MjtJoint, MjtObjBase};
 use crate::plant::engine;
 use crate::settings::SimSettings;
 
-/// A robot that an MJCF file describes.
+/// A robot that an MJCF or URDF file describes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobotFile {
     /// The file; meshes lie where it says.
     pub path: PathBuf,
+    /// The robot as MJCF, read in place of the file where there is one, as for a URDF.
+    pub mjcf: Option<String>,
     /// The robot's body in our terms: hinges alone, every frame the world's where all coordinates are zero.
     pub skeleton: Arc<Skeleton>,
     /// For each coordinate of the body the file's joint that it turns.
@@ -35,6 +37,7 @@ impl From<RobotModel> for RobotFile {
             offsets: model.hinges.iter().map(|h| h.neutral_rad).collect(),
             base: model.root,
             path: model.path,
+            mjcf: model.mjcf,
             skeleton: Arc::new(model.skeleton),
         }
     }
@@ -60,7 +63,16 @@ pub(crate) fn load(robot: &RobotFile, settings: &SimSettings) -> Result<MjModel>
             robot.offsets.len()
         )));
     }
-    let mut spec = MjSpec::from_xml(&robot.path).map_err(engine)?;
+    let mut spec = match &robot.mjcf {
+        // The engine's strings end at a zero byte.
+        Some(text) if text.contains('\0') => {
+            return Err(Error::invalid(
+                "the MJCF of a robot is text without zero bytes",
+            ));
+        }
+        Some(text) => MjSpec::from_xml_string(text).map_err(engine)?,
+        None => MjSpec::from_xml(&robot.path).map_err(engine)?,
+    };
     if spec.body(&robot.base).is_none() {
         let known: Vec<&str> = spec.body_iter().map(|b| b.name()).collect();
         return Err(Error::unknown_name("body of the robot", &robot.base, known));

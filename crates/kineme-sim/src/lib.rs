@@ -1,8 +1,8 @@
-//! Humanoids that move in physics: the bodies of kineme, and robots that MJCF files describe, in MuJoCo.
+//! Humanoids that move in physics: the bodies of kineme, and robots that MJCF and URDF files describe, in MuJoCo.
 //!
 //! A [`SimulatedRobot`] takes commands like any [`kineme::control::Robot`], and comes as near to them as its joints'
 //! drives allow. [`SimulatedRobot::humanoid`] makes Adonis, Ares or another body, whose model ([`mjcf`]) is made from
-//! its skeleton; [`SimulatedRobot::from_mjcf`] a robot of a file. Its root is held: nothing here keeps a balance.
+//! its skeleton; [`SimulatedRobot::from_file`] a robot of a file. Its root is held: nothing here keeps a balance.
 //!
 //! The engine knows hinges alone. [`Hinges`] goes between their angles and the coordinates of a body, in which a ball
 //! joint is a rotation vector; a ball is a [`Triple`] of hinges in one part. [`Servo`] says how each hinge is driven,

@@ -58,13 +58,13 @@ impl SimulatedRobot {
         Self::new(body, model, hinges, bodies, settings)
     }
 
-    /// A robot of an MJCF file, its base welded, in the posture of the file, at rest. Its own drives are taken off;
+    /// A robot of an MJCF or URDF file, its base welded, in the posture of the file, at rest. Its own drives are taken off;
     /// ours have the gains of the settings and its own torque limits. Joints that no coordinate moves are held.
     ///
     /// # Errors
     /// For settings out of range, when the file cannot be read, lacks a joint or the base, or has joints that are
     /// neither hinges nor sliders besides the base's own.
-    pub fn from_mjcf(robot: &RobotFile, settings: &SimSettings) -> Result<Self> {
+    pub fn from_file(robot: &RobotFile, settings: &SimSettings) -> Result<Self> {
         settings.check()?;
         let model = load(robot, settings)?;
         let body = &robot.skeleton;

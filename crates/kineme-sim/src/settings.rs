@@ -42,7 +42,8 @@ pub struct SimSettings {
     pub torque_limits: bool,
     /// Whether hinges end at the limits of the body, or at those of the robot's own file.
     pub joint_limits: bool,
-    /// Whether parts collide that a robot's own file lets collide. The generated bodies have no parts that do.
+    /// Whether parts collide that a robot's own MJCF file lets collide. Generated bodies and robots of URDF files have no
+    /// parts that do.
     pub contacts: bool,
 }
 

@@ -7,7 +7,7 @@ use kineme::control::{Command, Robot};
 use kineme::retargeting::Transfer;
 use kineme::skeleton::JointKind;
 use kineme::{Root, Skeleton};
-use kineme_formats::mjcf::{RobotModel, read};
+use kineme_formats::robot::{RobotModel, read};
 use kineme_sim::{RobotFile, Servo, SimSettings, SimulatedRobot};
 use nalgebra::Vector3;
 
@@ -86,6 +86,7 @@ fn small(folder: &Path) -> RobotFile {
     ];
     RobotFile {
         path,
+        mjcf: None,
         skeleton: Arc::new(Skeleton::new("small", joints, vec![]).expect("a body")),
         hinges: vec!["lift".into(), "bend".into()],
         offsets: vec![0.0, 0.2],
@@ -114,7 +115,7 @@ fn a_robot_is_welded_and_driven_by_our_servo() {
             servo: Some(servo),
             ..SimSettings::default()
         };
-        let mut moved = SimulatedRobot::from_mjcf(&robot, &settings).expect("a robot");
+        let mut moved = SimulatedRobot::from_file(&robot, &settings).expect("a robot");
         let told = command(&[0.5, 0.7], &[0.0, 0.0]);
         for _ in 0..240 {
             moved.advance(&told, 1.0 / RATE_HZ).expect("stable");
@@ -135,7 +136,7 @@ fn a_robot_is_welded_and_driven_by_our_servo() {
 fn a_robot_is_as_strong_as_its_file_says() {
     let folder = tempfile::tempdir().expect("a folder");
     let robot = small(folder.path());
-    let made = SimulatedRobot::from_mjcf(&robot, &SimSettings::default()).expect("a robot");
+    let made = SimulatedRobot::from_file(&robot, &SimSettings::default()).expect("a robot");
     let limits: Vec<_> = made.plant().model().actuator_forcerange().to_vec();
     // Of the joint itself before that of its drive; through the gear; none.
     assert_eq!(limits[0], [-40.0, 40.0]);
@@ -148,7 +149,7 @@ fn what_a_file_does_not_have_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let good = small(folder.path());
     let refused = |robot: RobotFile| {
-        let made = SimulatedRobot::from_mjcf(&robot, &SimSettings::default());
+        let made = SimulatedRobot::from_file(&robot, &SimSettings::default());
         made.err().expect("refused").to_string()
     };
     let mut robot = good.clone();
@@ -189,7 +190,7 @@ fn the_g1_follows_a_wave_and_keeps_its_limits() {
     let robot = file(&model);
     let body = Arc::clone(&robot.skeleton);
     let adonis = Arc::new(kineme::adonis().expect("adonis"));
-    let mut made = SimulatedRobot::from_mjcf(&robot, &SimSettings::default()).expect("a robot");
+    let mut made = SimulatedRobot::from_file(&robot, &SimSettings::default()).expect("a robot");
     let mut transfer = Transfer::between(&adonis, &body).expect("parts in common");
     let shoulder = adonis.coordinates(adonis.joint("right_shoulder").expect("a shoulder"));
     let elbow = adonis
@@ -254,7 +255,7 @@ fn the_g1_stands_where_its_body_does() {
     let Some(model) = g1() else { return };
     let robot = file(&model);
     let body = Arc::clone(&robot.skeleton);
-    let mut made = SimulatedRobot::from_mjcf(&robot, &SimSettings::default()).expect("a robot");
+    let mut made = SimulatedRobot::from_file(&robot, &SimSettings::default()).expect("a robot");
     let mut pose = vec![0.0; body.dof()];
     for (c, x) in pose.iter_mut().enumerate() {
         *x = 0.3 * (1.7 * c as f64).sin();

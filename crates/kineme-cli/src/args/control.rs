@@ -21,7 +21,7 @@ pub enum ServoName {
 ///
 /// A plan says which primitive when, in which manner and on which joints; its rules answer what the body watches. The
 /// arbiter decides among behaviors that want the same joints: by priority, the winner takes all, or weighted together.
-/// The body is simulated (Adonis, Ares, or a robot from an MJCF file), its pelvis held; what it really did is written
+/// The body is simulated (Adonis, Ares, or a robot from an MJCF or URDF file), its pelvis held; what it really did is written
 /// and measured against what it was told.
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -29,7 +29,7 @@ Examples:
   kineme control boxing.kineme plan.toml --body adonis         on a body of 20 joint angles
   kineme control boxing.kineme plan.toml --body ares -o ring.bvh
   kineme control boxing.kineme plan.toml --body adonis --report ring    and look at it: ring/index.html
-  kineme control boxing.kineme plan.toml --body g1.xml         on your robot
+  kineme control boxing.kineme plan.toml --body g1.xml         on your robot (.urdf serves too)
   kineme control boxing.kineme spar.toml --watch attacker.bvh  answer what another one does
   producer | kineme control boxing.kineme spar.toml --watch -  answer a live stream of joint angles
 A plan:
@@ -56,8 +56,8 @@ pub struct ControlArgs {
     /// The plan
     #[arg(value_name = "PLAN.toml")]
     pub plan: PathBuf,
-    /// The body that moves: ares, adonis or an MJCF file, with the profile of its joints beside it (same stem, .toml) unless
-    /// their names tell [default: the vocabulary's]
+    /// The body that moves: ares, adonis or an MJCF or URDF file, with the profile of its joints beside it (same stem,
+    /// .toml) unless their names tell [default: the vocabulary's]
     #[arg(long, value_name = "NAME|FILE")]
     pub body: Option<String>,
     /// The motion to write, .bvh, .csv or .npz: what the body did

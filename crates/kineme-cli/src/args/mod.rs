@@ -167,7 +167,7 @@ pub struct ConvertArgs {
     /// The file to write, .bvh, .csv or .npz; for a folder or an archive a folder; - is stdout
     #[arg(value_name = "OUT")]
     pub out: PathBuf,
-    /// Express the movement in the joints of this body: ares, adonis, or a robot of an MJCF file
+    /// Express the movement in the joints of this body: ares, adonis, or a robot of an MJCF or URDF file
     #[arg(long, value_name = "NAME|FILE")]
     pub body: Option<String>,
     /// Resample to this rate

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use kineme::control::{KinematicRobot, Robot};
 use kineme::{Skeleton, Vocabulary};
-use kineme_formats::mjcf::RobotModel;
+use kineme_formats::robot::RobotModel;
 
 use crate::args::ControlArgs;
 use crate::bodies::{built_in, is_robot, robot as read};
@@ -50,7 +50,7 @@ fn simulated(args: &ControlArgs, body: Body) -> Result<Box<dyn Robot>, Failure> 
     };
     let robot = match body {
         Body::BuiltIn(body) => SimulatedRobot::humanoid(&body, &settings)?,
-        Body::File(model) => SimulatedRobot::from_mjcf(&(*model).into(), &settings)?,
+        Body::File(model) => SimulatedRobot::from_file(&(*model).into(), &settings)?,
     };
     Ok(Box::new(robot))
 }

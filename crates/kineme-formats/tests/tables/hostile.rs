@@ -3,7 +3,7 @@
 use kineme_formats::tables::{angles, msr, positions};
 use kineme_formats::vocabulary::VocabularyFile;
 use kineme_formats::{
-    FormatError, Place, manifest, marks, mjcf, plan, profile, script, vocabulary,
+    FormatError, Place, manifest, marks, plan, profile, robot, script, vocabulary,
 };
 use proptest::prelude::*;
 
@@ -16,7 +16,7 @@ fn read_by_all(bytes: &[u8]) {
     let _ = manifest::parse("a", bytes);
     let _ = plan::parse("a", bytes);
     let alone = |file: &str| Err(FormatError::new(file, Place::File, "nothing", "a file"));
-    let _ = mjcf::parse("a", bytes, &alone, None);
+    let _ = robot::parse("a", bytes, &alone, None);
     if let Ok(table) = angles::parse("a", bytes) {
         let again = angles::parse("a", &table.write("a").unwrap()).unwrap();
         assert_eq!(again, table);
@@ -49,6 +49,9 @@ fn whole_files() -> Vec<Vec<u8>> {
         "seconds = 1\n[[behavior]]\nprimitive = 'jab'\n[[rule]]\nwhen = 'a'\nthen = { primitive = 'b' }\n",
         "<mujoco><worldbody><body name='a'><body name='b' pos='0 0 1'><joint name='h' range='-9 9'/></body></body>\
          </worldbody></mujoco>",
+        "<robot name='r'><link name='a'/><link name='b'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' \
+         iyy='1' iyz='0' izz='1'/></inertial></link><joint name='h' type='revolute'><parent link='a'/><child link='b'/>\
+         <origin xyz='0 0 1' rpy='1 0 0'/><limit lower='-1' upper='1' effort='9'/></joint></robot>",
     ];
     let mut files: Vec<Vec<u8>> = texts.iter().map(|t| t.as_bytes().to_vec()).collect();
     files.push("0.1 0.2 2.5 1.0\n".repeat(40).into_bytes());
@@ -62,6 +65,7 @@ fn deep_nesting_and_long_lines_are_refused() {
     for text in [
         "<body>",
         "<default>",
+        "<robot><link>",
         "<a b='",
         "[",
         "{a=",
@@ -102,7 +106,7 @@ proptest! {
 
     #[test]
     fn mutations_are_read_or_refused(
-        which in 0..8usize,
+        which in 0..9usize,
         edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4u8), 1..6),
     ) {
         let mut bytes = whole_files()[which].clone();

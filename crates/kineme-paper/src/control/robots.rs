@@ -6,19 +6,19 @@ use kineme::control::{Arbitration, ControlSettings, Controller, Plan, Planned, R
 use kineme::interaction::{Performance, Session, SessionSettings, standing};
 use kineme::skeleton::JointKind;
 use kineme::{Motion, Vocabulary};
-use kineme_formats::mjcf;
+use kineme_formats::robot as file;
 use kineme_sim::{SimSettings, SimulatedRobot};
 
 use super::tracking::RATE_HZ;
 use crate::sets::Result;
 
-/// A simulated robot of an MJCF file, welded at its base.
+/// A simulated robot of an MJCF or URDF file, welded at its base.
 ///
 /// # Errors
 /// When the file cannot be read, or the engine refuses it.
 pub fn robot(path: &Path) -> Result<SimulatedRobot> {
-    let model = mjcf::read(path, None)?;
-    Ok(SimulatedRobot::from_mjcf(
+    let model = file::read(path, None)?;
+    Ok(SimulatedRobot::from_file(
         &model.into(),
         &SimSettings::default(),
     )?)

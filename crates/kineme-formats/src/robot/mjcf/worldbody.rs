@@ -7,47 +7,11 @@ use roxmltree::Node;
 
 use kineme::skeleton::Range;
 
-use super::source::{Compiler, Sources};
+use super::source::Compiler;
 use crate::error::Result;
+use crate::robot::source::Sources;
+use crate::robot::tree::{Body, Hinge, MOST, TURN, Tree};
 use crate::sheet::quoted;
-
-/// The range of a hinge without a limit: a turn either way.
-const TURN: f64 = std::f64::consts::TAU;
-
-/// A rigid body of the model, its parent before it.
-#[derive(Debug, Clone)]
-pub struct Body {
-    pub name: String,
-    pub parent: Option<usize>,
-    /// Its place at rest, in the world, metres.
-    pub position: Vector3<f64>,
-    pub hinges: Vec<Hinge>,
-    /// Mass in kilograms, centre in the world, inertia about it in the world's axes; `None` when only geoms tell.
-    pub inertial: Option<(f64, Vector3<f64>, Matrix3<f64>)>,
-}
-
-/// A hinge of a body, at rest, in the world.
-#[derive(Debug, Clone)]
-pub struct Hinge {
-    pub name: String,
-    pub anchor: Vector3<f64>,
-    pub axis: Unit<Vector3<f64>>,
-    /// Angles that it may have, radians, zero at rest.
-    pub range: Range,
-    /// The engine's coordinate at rest, radians.
-    pub reference: f64,
-}
-
-/// What a model holds of use here.
-#[derive(Debug, Default)]
-pub struct Tree {
-    pub bodies: Vec<Body>,
-    /// What was passed over, each once.
-    pub warnings: Vec<String>,
-}
-
-/// Bodies and hinges of a model at most; the largest humanoids with hands have some hundred.
-const MOST: usize = 2000;
 
 /// Attributes of `joint` by class; a class has those of the classes around it.
 type Classes<'a> = BTreeMap<String, BTreeMap<&'a str, &'a str>>;
@@ -58,10 +22,6 @@ const MAIN: &str = "main";
 /// Reads the model.
 pub fn tree(sources: &Sources<'_>) -> Result<Tree> {
     let root = sources.files[0].1.root_element();
-    if !root.has_tag_name("mujoco") {
-        let found = format!("<{}>", root.tag_name().name());
-        return Err(sources.error(root, found, "a model: <mujoco>"));
-    }
     let sections = sources.children(root)?;
     let mut compiler = Compiler::default();
     let mut classes = Classes::from([(MAIN.to_string(), BTreeMap::new())]);
@@ -76,7 +36,10 @@ pub fn tree(sources: &Sources<'_>) -> Result<Tree> {
         sources,
         compiler,
         classes,
-        tree: Tree::default(),
+        tree: Tree {
+            title: root.attribute("model").map(str::to_string),
+            ..Tree::default()
+        },
         hinges: 0,
     };
     for section in sections {

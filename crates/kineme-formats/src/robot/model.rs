@@ -1,4 +1,4 @@
-//! From a model's bodies to a [`RobotModel`]: one joint a hinge, roles, the neutral posture, effectors.
+//! From a robot's bodies to a [`RobotModel`]: one joint a hinge, roles, the neutral posture, effectors.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,13 +15,8 @@ use crate::error::{FormatError, Place, Result};
 use crate::profile::Profile;
 use crate::sheet::quoted;
 
-/// The robot of a model's bodies; `title` is the model's name.
-pub fn robot(
-    file: &str,
-    title: Option<&str>,
-    mut tree: Tree,
-    profile: Option<&Profile>,
-) -> Result<RobotModel> {
+/// The robot of a file's bodies.
+pub fn model(file: &str, mut tree: Tree, profile: Option<&Profile>) -> Result<RobotModel> {
     let mut warnings = std::mem::take(&mut tree.warnings);
     let members = robot_bodies(file, &tree.bodies, &mut warnings)?;
     let root = tree.bodies[members[0]].name.clone();
@@ -37,7 +32,8 @@ pub fn robot(
     if rest.iter().all(|j| j.joint.link.mass_kg == 0.0) {
         warnings.push("no <inertial>: masses are not known".into());
     }
-    let title = title.filter(|t| !t.trim().is_empty()).unwrap_or(&root);
+    let title = tree.title.as_deref().filter(|t| !t.trim().is_empty());
+    let title = title.unwrap_or(&root);
     let angles = neutral(title, &mut rest).map_err(refused)?;
     let effectors = effectors(&rest);
     let joints: Vec<Joint> = rest.into_iter().map(|j| j.joint).collect();
@@ -46,6 +42,7 @@ pub fn robot(
     Ok(RobotModel {
         skeleton,
         path: file.into(),
+        mjcf: tree.mjcf.take(),
         hinges: hinges
             .zip(angles)
             .map(|(hinge, angle)| RobotHinge {

@@ -79,11 +79,17 @@ pub fn neutral(name: &str, rest: &mut [Rest]) -> Result<Vec<f64>> {
 /// Sets the offsets of joints from their places, and where their bones end: where the next part begins, else as far
 /// beyond the centre of mass as that lies away.
 fn link(rest: &mut [Rest]) {
-    // The first child of each joint: from behind, the first comes last.
+    // The first child of each joint, from behind so that the first comes last; before sensors and covers, which may
+    // stand anywhere on a part, what moves.
     let mut next: Vec<Option<usize>> = vec![None; rest.len()];
+    let hinge = |at: &Rest| matches!(at.joint.kind, JointKind::Hinge { .. });
+    let mut moves: Vec<bool> = rest.iter().map(hinge).collect();
     for j in (0..rest.len()).rev() {
         if let Some(parent) = rest[j].joint.parent {
-            next[parent] = Some(j);
+            moves[parent] |= moves[j];
+            if moves[j] || next[parent].is_none_or(|other| !moves[other]) {
+                next[parent] = Some(j);
+            }
         }
     }
     for j in 0..rest.len() {
