@@ -181,8 +181,7 @@ fn format(args: &SynthesizeArgs) -> Result<Written, Failure> {
             args.out.display()
         ),
     };
-    Err(Failure::usage(message)
-        .hint("write .bvh, .csv or .npz, or say --to bvh, --to csv or --to npz"))
+    Err(Failure::usage(message).hint("write .bvh, .csv, .parquet or .npz, or say which with --to"))
 }
 
 fn reach(primitive: &Primitive, target: &Target) -> Result<Reached, Failure> {
