@@ -264,7 +264,7 @@ fn format(args: &ConvertArgs) -> Result<Written, Failure> {
             "`{}`: `.{other}` is no format that can be written",
             args.out.display()
         ))
-        .hint("write .bvh, .csv, .parquet or .npz, or say which with --to")),
+        .hint("write .bvh, .csv, .parquet or .npz, or say --to bvh, --to csv, --to parquet or --to npz")),
         _ => Ok(Written::Bvh),
     }
 }

@@ -181,7 +181,9 @@ fn format(args: &SynthesizeArgs) -> Result<Written, Failure> {
             args.out.display()
         ),
     };
-    Err(Failure::usage(message).hint("write .bvh, .csv, .parquet or .npz, or say which with --to"))
+    Err(Failure::usage(message).hint(
+        "write .bvh, .csv, .parquet or .npz, or say --to bvh, --to csv, --to parquet or --to npz",
+    ))
 }
 
 fn reach(primitive: &Primitive, target: &Target) -> Result<Reached, Failure> {

@@ -207,24 +207,27 @@ impl Pages {
         Ok(count)
     }
 
+    /// The encoding of values. Of those that numbers have, DELTA_BINARY_PACKED is left out: the library's decoder of it
+    /// runs out of its buffer where a page says that it is empty. Whole numbers have it where somebody asked for it.
     fn encoding(&self, found: Option<i64>) -> Result<Encoding> {
-        const KNOWN: [Encoding; 4] = [
-            Encoding::PLAIN,
-            Encoding::RLE_DICTIONARY,
-            Encoding::DELTA_BINARY_PACKED,
-            Encoding::BYTE_STREAM_SPLIT,
-        ];
-        let by_number = |e: &Encoding| {
-            let older =
-                *e == Encoding::RLE_DICTIONARY && found == Some(Encoding::PLAIN_DICTIONARY as i64);
-            older || found == Some(*e as i64)
-        };
-        let known = KNOWN.into_iter().find(by_number);
-        let known = known.ok_or_else(|| wrong("values in an encoding that numbers do not have"))?;
-        if known == Encoding::RLE_DICTIONARY && !self.dictionary {
-            return Err(wrong("no dictionary"));
+        let is = |encoding: Encoding| found == Some(encoding as i64);
+        if is(Encoding::PLAIN) {
+            Ok(Encoding::PLAIN)
+        } else if is(Encoding::BYTE_STREAM_SPLIT) {
+            Ok(Encoding::BYTE_STREAM_SPLIT)
+        } else if !is(Encoding::RLE_DICTIONARY) && !is(Encoding::PLAIN_DICTIONARY) {
+            let name = match is(Encoding::DELTA_BINARY_PACKED) {
+                true => "the encoding DELTA_BINARY_PACKED",
+                false => "another encoding",
+            };
+            Err(wrong(format!(
+                "{name}, where plain, split and dictionaries can be read,"
+            )))
+        } else if self.dictionary {
+            Ok(Encoding::RLE_DICTIONARY)
+        } else {
+            Err(wrong("no dictionary"))
         }
-        Ok(known)
     }
 
     /// A page's bytes, which are to be so many, and may be at most `most`.

@@ -21,7 +21,7 @@ use crate::text::Blame;
 
 /// Numbers that a byte of the file may stand for. A column that never changes is written once, whatever its length: a
 /// table of a body at rest has 17 numbers a byte. The factor, 200 bytes of numbers a byte, is that of archives.
-const NUMBERS_A_BYTE: usize = 25;
+pub(super) const NUMBERS_A_BYTE: usize = 25;
 /// Numbers that a file may hold however small it is.
 const ALWAYS_ALLOWED: usize = 1 << 16;
 

@@ -1,7 +1,8 @@
 //! From columns of numbers to a Parquet file.
 //!
-//! Values stand one after the other as they are, neither compressed nor in dictionaries: angles hardly repeat, every
-//! reader knows it, and the bytes follow from the numbers alone.
+//! Values stand one after the other as they are, and a column that never changes, as those of joints that a recording
+//! does not move, is written once, as a dictionary of one. Nothing is compressed: angles hardly repeat, every reader
+//! knows this, and the bytes follow from the numbers alone.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -11,8 +12,9 @@ use parquet::data_type::{DoubleType, Int64Type};
 use parquet::errors::Result;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::SerializedFileWriter;
-use parquet::schema::types::{Type as Element, TypePtr};
+use parquet::schema::types::{ColumnPath, Type as Element, TypePtr};
 
+use super::read::NUMBERS_A_BYTE;
 use crate::error::FormatError;
 use crate::text::Blame;
 
@@ -29,6 +31,28 @@ pub(crate) enum Cells<'a> {
     Some(Cow<'a, [Option<f64>]>),
 }
 
+impl Cells<'_> {
+    /// Whether it has values and they are the same to the last bit.
+    fn is_constant(&self) -> bool {
+        let mut bits: Box<dyn Iterator<Item = u64>> = match self {
+            Cells::Count(_) => return false,
+            Cells::All(values) => Box::new(values.iter().map(|v| v.to_bits())),
+            Cells::Some(cells) => Box::new(cells.iter().flatten().map(|v| v.to_bits())),
+        };
+        let first = bits.next();
+        first.is_some_and(|first| bits.all(|b| b == first))
+    }
+
+    /// Whether it takes 8 bytes a row.
+    fn is_full_size(&self) -> bool {
+        let full = match self {
+            Cells::Count(_) | Cells::All(_) => true,
+            Cells::Some(cells) => cells.iter().all(Option::is_some),
+        };
+        full && !self.is_constant()
+    }
+}
+
 /// Writes columns of equal length, each under its name, as one row group. The same numbers give the same bytes.
 ///
 /// # Errors
@@ -42,14 +66,22 @@ pub(crate) fn write(
 }
 
 fn file(columns: &[(String, Cells<'_>)]) -> Result<Vec<u8>> {
-    let properties = WriterProperties::builder()
+    let mut properties = WriterProperties::builder()
         .set_created_by(WRITER.into())
         .set_compression(Compression::UNCOMPRESSED)
         .set_dictionary_enabled(false)
         .set_encoding(Encoding::PLAIN)
         .set_statistics_enabled(EnabledStatistics::None)
-        .set_offset_index_disabled(true)
-        .build();
+        .set_offset_index_disabled(true);
+    // Where next to nothing moves, this would make a file that is refused as too small for what it holds.
+    let whole = columns.iter().filter(|(_, c)| c.is_full_size()).count();
+    if columns.len() <= 8 * NUMBERS_A_BYTE * whole {
+        for (name, _) in columns.iter().filter(|(_, cells)| cells.is_constant()) {
+            let path = ColumnPath::new(vec![name.clone()]);
+            properties = properties.set_column_dictionary_enabled(path, true);
+        }
+    }
+    let properties = properties.build();
     let mut bytes = Vec::new();
     let mut file = SerializedFileWriter::new(&mut bytes, schema(columns)?, Arc::new(properties))?;
     let mut group = file.next_row_group()?;

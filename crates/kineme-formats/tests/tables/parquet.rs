@@ -98,6 +98,34 @@ fn long_tables_come_back_too() {
     assert_eq!(bits(&angles::parse("t", &bytes).unwrap()), bits(&table));
 }
 
+#[test]
+fn what_does_not_move_takes_no_room_and_is_read_however_little_moves() {
+    let (rows, still) = (20_000, [-0.0, 1e-310, 0.1]);
+    let table = |columns: usize| AngleTable {
+        times: (0..rows).map(|i| i as f64 / 120.0).collect(),
+        root: vec![[Some(0.0); 4]; rows],
+        columns: (0..columns)
+            .map(|i| (format!("j{i}"), vec![Some(still[i % 3]); rows]))
+            .collect(),
+    };
+    for (columns, most) in [(130, 40 * 1024), (2000, usize::MAX)] {
+        let table = table(columns);
+        let bytes = table.write_parquet("t").unwrap();
+        assert!(bytes.len() - 8 * rows < most, "{} bytes", bytes.len());
+        assert_eq!(bits(&angles::parse("t", &bytes).unwrap()), bits(&table));
+    }
+    // A body at rest for ten minutes.
+    let mut rest = body_angles::table(&motion("ares", 1));
+    rest.times = (0..72_000).map(|i| i as f64 / 120.0).collect();
+    rest.root = vec![rest.root[0]; 72_000];
+    for (_, values) in &mut rest.columns {
+        *values = vec![values[0]; 72_000];
+    }
+    let bytes = rest.write_parquet("t").unwrap();
+    let recording = parse(Kind::Angles, "t", &bytes, None, None).unwrap();
+    assert_eq!(recording.frames(), 72_000);
+}
+
 /// A Parquet file reads as the CSV does, whoever asks.
 fn alike(what: &str, csv: &[u8], bytes: &[u8]) {
     let by_content = detect("m.csv", csv);
@@ -216,7 +244,6 @@ fn what_others_wrote_is_read() {
 
     for (name, frames, words) in [
         ("frames", 6, "no time base"),
-        ("delta", 6, "no time base"),
         ("pandas", 6, "`__index_level_0__` is an index"),
     ] {
         let bytes = foreign(name);
@@ -247,6 +274,7 @@ fn what_is_no_table_of_numbers_is_refused_by_column_and_row() {
         ("stamps", Place::File, "column `time` with dates"),
         ("infinite", row, "inf in column `neck_x`"),
         ("zstd", Place::File, "ZSTD compression"),
+        ("delta", Place::File, "DELTA_BINARY_PACKED, where"),
         ("others", Place::File, "`frame`, `head_x`, `label`"),
     ] {
         let found = kind(&foreign(name)).unwrap_or(Kind::Parquet);

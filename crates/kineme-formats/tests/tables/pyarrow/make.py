@@ -35,9 +35,6 @@ write("floats", TABLE.cast(narrow))
 whole = {"frame": pa.array(range(ROWS), pa.uint8())}
 points = {f"head_{axis}": FLOATS[f"root_{axis}"] for axis in "xyz"}
 write("frames", pa.table(whole | points))
-delta = {"frame": "DELTA_BINARY_PACKED"}
-write("delta", pa.table({"frame": pa.array(range(ROWS), pa.int64())} | points),
-      use_dictionary=False, column_encoding=delta)
 # Rows of a larger table: pandas writes their old numbers beside them.
 pd.DataFrame({"frame": range(ROWS)} | {n: COLUMNS[n.replace("head", "root")] for n in points}
              ).drop(index=[3]).to_parquet("pandas.parquet")
@@ -52,6 +49,9 @@ def refused(name, at, values, **how):
     write(name, SMALL.set_column(at, SMALL.column_names[at], values), compression="none", **how)
 
 
+delta = {"frame": "DELTA_BINARY_PACKED"}
+write("delta", pa.table({"frame": pa.array(range(ROWS), pa.int64())} | points),
+      use_dictionary=False, column_encoding=delta)
 write("zstd", SMALL, compression="zstd")
 refused("texts", 5, pa.array(["a", "b"]))
 refused("lists", 5, pa.array([[1.0, 2.0], []]))
