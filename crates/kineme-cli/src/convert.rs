@@ -1,4 +1,4 @@
-//! `kineme convert`: motions as BVH, CSV or NPZ, as they are or on another body.
+//! `kineme convert`: motions as BVH, CSV, Parquet or NPZ, as they are or on another body.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -29,14 +29,21 @@ struct Job<'a> {
 #[derive(Debug, Clone, Copy)]
 enum What {
     Bvh,
-    /// A table of a body's joint angles.
-    Angles,
+    /// A table of a body's joint angles, as CSV or Parquet.
+    Angles(Table),
     /// Rotations or joint angles, and positions, as NPZ.
     Arrays,
-    /// A table of positions.
-    Positions(Frame),
+    /// A table of positions, as CSV or Parquet.
+    Positions(Frame, Table),
     /// Positions as NPZ.
     PositionArrays(Frame),
+}
+
+/// How a table is written.
+#[derive(Debug, Clone, Copy)]
+enum Table {
+    Csv,
+    Parquet,
 }
 
 /// What was made of a motion.
@@ -190,8 +197,11 @@ impl Job<'_> {
             None => motion,
         };
         let bytes = match self.what {
-            What::Angles => body_angles::table(&motion)
+            What::Angles(Table::Csv) => body_angles::table(&motion)
                 .write(motion.name())
+                .map_err(unwritten)?,
+            What::Angles(Table::Parquet) => body_angles::table(&motion)
+                .write_parquet(motion.name())
                 .map_err(unwritten)?,
             What::Arrays => npz::write(&motion).map_err(unwritten)?,
             _ => self.written(&as_recording(&motion, recording)?)?,
@@ -208,14 +218,17 @@ impl Job<'_> {
     fn written(&self, recording: &Recording) -> Result<Vec<u8>, Failure> {
         let mut bytes = Vec::new();
         match self.what {
-            What::Positions(frame) => {
+            What::Positions(frame, Table::Csv) => {
                 positions::write(recording, frame, &mut bytes).map_err(unwritten)?;
+            }
+            What::Positions(frame, Table::Parquet) => {
+                bytes = positions::write_parquet(recording, frame).map_err(unwritten)?;
             }
             What::PositionArrays(frame) => {
                 bytes = npz::write_positions(recording, frame).map_err(unwritten)?;
             }
             What::Arrays => bytes = npz::write_recording(recording).map_err(unwritten)?,
-            What::Bvh | What::Angles => bvh::write(recording, &mut bytes).map_err(|e| {
+            What::Bvh | What::Angles(_) => bvh::write(recording, &mut bytes).map_err(|e| {
                 unwritten(e)
                     .hint("--body ares gives positions a skeleton; --positions writes them as CSV")
             })?,
@@ -241,13 +254,6 @@ fn format(args: &ConvertArgs) -> Result<Written, Failure> {
         .out
         .extension()
         .map(|e| e.to_string_lossy().to_lowercase());
-    if extension.as_deref() == Some("parquet") {
-        return Err(Failure::usage(format!(
-            "`{}`: Parquet cannot be written yet",
-            args.out.display()
-        ))
-        .hint("write .csv or .npz"));
-    }
     if let Some(to) = args.to {
         return Ok(to);
     }
@@ -262,7 +268,7 @@ fn format(args: &ConvertArgs) -> Result<Written, Failure> {
             "`{}`: `.{other}` is no format that can be written",
             args.out.display()
         ))
-        .hint("write .bvh, .csv or .npz, or say --to bvh, --to csv or --to npz")),
+        .hint("write .bvh, .csv, .parquet or .npz, or say --to bvh, --to csv, --to parquet or --to npz")),
         _ => Ok(Written::Bvh),
     }
 }
@@ -273,17 +279,21 @@ fn what(args: &ConvertArgs, format: Written) -> Result<What, Failure> {
     } else {
         Frame::Metres
     };
+    let table = match format {
+        Written::Parquet => Table::Parquet,
+        _ => Table::Csv,
+    };
     match (format, args.positions) {
         (Written::Npz, true) => Ok(What::PositionArrays(frame)),
         (Written::Npz, false) => Ok(What::Arrays),
-        (Written::Csv, true) => Ok(What::Positions(frame)),
-        (Written::Csv, false) if args.body.is_some() => Ok(What::Angles),
-        (Written::Csv, false) => Err(Failure::usage(
+        (Written::Csv | Written::Parquet, true) => Ok(What::Positions(frame, table)),
+        (Written::Csv | Written::Parquet, false) if args.body.is_some() => Ok(What::Angles(table)),
+        (Written::Csv | Written::Parquet, false) => Err(Failure::usage(
             "a table of joint angles needs a body to have the joints of",
         )
         .hint("--body ares for joint angles, or --positions for where the joints are")),
         (Written::Bvh, false) => Ok(What::Bvh),
         (Written::Bvh, true) => Err(Failure::usage("BVH holds rotations, not positions")
-            .hint("write a .csv with --positions")),
+            .hint("write .csv or .parquet with --positions")),
     }
 }

@@ -50,7 +50,7 @@ impl Written {
     /// The format that a file's name says.
     pub fn of(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_string_lossy().to_lowercase();
-        [Self::Bvh, Self::Csv, Self::Npz]
+        [Self::Bvh, Self::Csv, Self::Parquet, Self::Npz]
             .into_iter()
             .find(|format| format.extension() == extension)
     }
@@ -60,6 +60,7 @@ impl Written {
         match self {
             Self::Bvh => "bvh",
             Self::Csv => "csv",
+            Self::Parquet => "parquet",
             Self::Npz => "npz",
         }
     }
@@ -81,6 +82,9 @@ impl Written {
             }
             Self::Csv => body_angles::table(motion)
                 .write(motion.name())
+                .map_err(unwritten),
+            Self::Parquet => body_angles::table(motion)
+                .write_parquet(motion.name())
                 .map_err(unwritten),
             Self::Npz => npz::write(motion).map_err(unwritten),
         }

@@ -187,8 +187,9 @@ fn format(args: &SynthesizeArgs) -> Result<Written, Failure> {
             args.out.display()
         ),
     };
-    Err(Failure::usage(message)
-        .hint("write .bvh, .csv or .npz, or say --to bvh, --to csv or --to npz"))
+    Err(Failure::usage(message).hint(
+        "write .bvh, .csv, .parquet or .npz, or say --to bvh, --to csv, --to parquet or --to npz",
+    ))
 }
 
 fn reach(primitive: &Primitive, target: &Target) -> Result<Reached, Failure> {

@@ -523,3 +523,36 @@ fn a_part_of_the_body_is_read_whatever_the_rest_does() {
         ],
     );
 }
+
+#[test]
+fn a_parquet_table_is_answered_as_its_csv_is() {
+    let folder = punches();
+    let at = folder.path();
+    done(at, "convert m/punch-out-02.bvh out.parquet --body ares");
+    let same = |csv: &str| {
+        let parquet = csv.replace("out.csv", "out.parquet");
+        let (csv, parquet) = (done(at, csv), done(at, &parquet));
+        assert!(!csv.out.is_empty());
+        assert_eq!(parquet.out.replace("out.parquet", "out.csv"), csv.out);
+        assert_eq!(parquet.err, csv.err);
+    };
+    same("info out.csv --json");
+    same("classify p.kineme out.csv --json");
+    same("convert out.csv - --to bvh");
+    same("convert out.csv - --to csv --positions");
+    let read = |name: &str| fs::read(at.join(name)).expect("a table");
+    let line = ["classify", "p.kineme", "-", "--json", "--frames"];
+    let streamed = |name: &str| with_input(at, &line, &read(name));
+    let (csv, parquet) = (streamed("out.csv"), streamed("out.parquet"));
+    assert_eq!(
+        (parquet.code, &parquet.out, &parquet.err),
+        (0, &csv.out, &csv.err)
+    );
+    assert!(csv.out.lines().count() > 10);
+    // A table of positions as Parquet is one of positions, and the bytes do not depend on who asks.
+    done(at, "convert out.parquet points.parquet --positions");
+    done(at, "convert out.csv points2.parquet --positions");
+    assert!(read("points.parquet") == read("points2.parquet"));
+    let told = done(at, "info points.parquet --json --input-rate positions=60").out;
+    assert!(told.contains("\"format\":\"positions\""), "{told}");
+}

@@ -57,7 +57,7 @@ fn exit_codes_say_what_went_wrong_and_hints_what_to_do() {
         ("derive arms.bvh -o - --json", 2, "stdout"),
         ("derive arms.bvh -o v --marks no.csv", 3, "no.csv"),
         ("convert arms.bvh a.csv", 2, "hint: --body ares"),
-        ("convert arms.bvh a.parquet", 2, "hint: write .csv or .npz"),
+        ("convert arms.bvh a.parquet", 2, "hint: --body ares"),
         ("convert arms.bvh a.fbx", 2, "`.fbx`"),
         ("convert arms.bvh a.bvh --positions", 2, "--positions"),
         ("convert arms.bvh a.csv --native", 2, "--positions"),

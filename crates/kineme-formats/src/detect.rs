@@ -5,7 +5,7 @@ use kineme::Recording;
 use crate::error::{FormatError, Place, Result};
 use crate::tables::{body_angles, msr, positions};
 use crate::text::{Blame, Lines, number, quoted, words};
-use crate::{amc, asf, bvh, c3d, deepmimic};
+use crate::{amc, asf, bvh, c3d, deepmimic, parquet};
 
 /// Bytes from the beginning of a file that suffice to tell its format.
 pub const HEAD: usize = 1 << 16;
@@ -29,6 +29,8 @@ pub enum Kind {
     Msr,
     /// Joint-angle table, as `convert` writes it.
     Angles,
+    /// Parquet of which the columns, at its end, have not been seen yet or cannot be read.
+    Parquet,
     /// Marker file of biomechanics.
     C3d,
     /// Archive that acts as a folder.
@@ -46,6 +48,7 @@ impl Kind {
             Kind::Positions | Kind::TimedPositions => "positions",
             Kind::Msr => "msr",
             Kind::Angles => "angles",
+            Kind::Parquet => "parquet",
             Kind::C3d => "c3d",
             Kind::Zip => "zip",
         }
@@ -63,7 +66,7 @@ impl Kind {
 }
 
 /// The kind of a file of this name that begins with `head` (at most [`HEAD`] bytes are looked at); `None` for what is
-/// no motion format.
+/// no motion format. Of Parquet, [`by_columns`] tells more.
 ///
 /// An extension that only motions have decides, so that a damaged motion is an error and not ignored; else
 /// the content does.
@@ -92,8 +95,8 @@ fn by_content(head: &[u8]) -> Option<Kind> {
     if c3d::sniff(head) {
         return Some(Kind::C3d);
     }
-    if head.starts_with(b"PAR1") {
-        return Some(Kind::Angles);
+    if parquet::begins(head) {
+        return Some(Kind::Parquet);
     }
     let mut lines = Lines::new(head);
     let (_, first) = lines.next_full()?;
@@ -114,7 +117,10 @@ fn by_content(head: &[u8]) -> Option<Kind> {
             }
         });
     }
-    if let Some(kind) = table(first) {
+    if let Some(kind) = std::str::from_utf8(first)
+        .ok()
+        .and_then(|t| table(&cells(t)))
+    {
         return Some(kind);
     }
     let four = |line: &[u8]| {
@@ -128,6 +134,20 @@ fn by_content(head: &[u8]) -> Option<Kind> {
     (four(first) && second.is_some_and(four)).then_some(Kind::Msr)
 }
 
+/// What a Parquet file is by its columns: a table of motion, none, or [`Kind::Parquet`] where it is damaged, so that
+/// this is an error and not ignored. `end(n)` gives its last n bytes, or all where it has fewer.
+pub fn by_columns(end: impl Fn(usize) -> Option<Vec<u8>>) -> Option<Kind> {
+    match parquet::column_names(end) {
+        Some(names) => table(&names),
+        None => Some(Kind::Parquet),
+    }
+}
+
+/// The kind of a Parquet file that is here as a whole.
+fn by_own_columns(bytes: &[u8]) -> Option<Kind> {
+    by_columns(|most| Some(bytes[bytes.len().saturating_sub(most)..].to_vec()))
+}
+
 /// What a file of no motion format seems to be, and what would be right in its place.
 pub(crate) fn unknown(bytes: &[u8]) -> (String, String) {
     const MOTIONS: &str =
@@ -137,15 +157,19 @@ pub(crate) fn unknown(bytes: &[u8]) -> (String, String) {
         let motion = "a motion; `kineme show` and `kineme view` look at vocabularies";
         return ("a vocabulary".into(), motion.into());
     }
-    let mut lines = Lines::new(&bytes[..bytes.len().min(HEAD)]);
-    let Some((_, first)) = lines.next_full() else {
-        return ("an empty file".into(), MOTIONS.into());
+    let (what, columns) = if parquet::begins(bytes) {
+        let names = parquet::column_names(|_| Some(bytes.to_vec()));
+        ("a Parquet table whose columns begin", names)
+    } else {
+        let mut lines = Lines::new(&bytes[..bytes.len().min(HEAD)]);
+        let Some((_, first)) = lines.next_full() else {
+            return ("an empty file".into(), MOTIONS.into());
+        };
+        let columns = std::str::from_utf8(first).ok().map(cells);
+        let columns = columns.filter(|columns| columns.len() > 1);
+        ("a table whose header begins", columns)
     };
-    let columns = std::str::from_utf8(first).ok().map(|text| {
-        let columns = text.split(',').map(|c| c.trim().trim_matches('"'));
-        columns.collect::<Vec<_>>()
-    });
-    match columns.filter(|columns| columns.len() > 1) {
+    match columns {
         Some(columns) => {
             let named: Vec<String> = columns
                 .iter()
@@ -154,7 +178,7 @@ pub(crate) fn unknown(bytes: &[u8]) -> (String, String) {
                 .collect();
             let more = if columns.len() > 4 { ", ..." } else { "" };
             (
-                format!("a table whose header begins {}{more}", named.join(", ")),
+                format!("{what} {}{more}", named.join(", ")),
                 "`frame` or `time` and then `<joint>_x`, `<joint>_y`, `<joint>_z` joint by joint (metres), or \
                  `time,root_x,root_y,root_z,root_yaw` and joint angles"
                     .into(),
@@ -164,12 +188,16 @@ pub(crate) fn unknown(bytes: &[u8]) -> (String, String) {
     }
 }
 
-/// A table's kind by its header.
-fn table(header: &[u8]) -> Option<Kind> {
-    let text = std::str::from_utf8(header).ok()?;
-    let mut columns = text.split(',').map(|c| c.trim().trim_matches('"'));
-    let key = columns.next()?;
-    let columns: Vec<&str> = columns.collect();
+/// The names in the header of a table.
+fn cells(header: &str) -> Vec<String> {
+    let cells = header.split(',').map(|c| c.trim().trim_matches('"'));
+    cells.map(str::to_owned).collect()
+}
+
+/// A table's kind by the names of its columns.
+fn table(columns: &[String]) -> Option<Kind> {
+    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let (&key, columns) = columns.split_first()?;
     if key == "time" && columns.starts_with(&["root_x", "root_y", "root_z", "root_yaw"]) {
         return Some(Kind::Angles);
     }
@@ -191,7 +219,7 @@ fn table(header: &[u8]) -> Option<Kind> {
 /// that an AMC belongs to.
 ///
 /// # Errors
-/// [`FormatError`] of the format's reader, or where this version has no reader for it.
+/// [`FormatError`] of the format's reader; for an archive or a skeleton, which are no motions.
 pub fn parse(
     kind: Kind,
     name: &str,
@@ -199,15 +227,6 @@ pub fn parse(
     rate_hz: Option<f64>,
     skeleton: Option<&asf::Skeleton>,
 ) -> Result<Recording> {
-    let unread = |what: &str| {
-        Err(FormatError::new(
-            name,
-            Place::File,
-            what,
-            "BVH, AMC, C3D, DeepMimic JSON, a position or joint-angle table, or MSR-Action3D text: this version does not \
-             read it",
-        ))
-    };
     match kind {
         Kind::Bvh => bvh::parse(name, bytes),
         Kind::DeepMimic => deepmimic::parse(name, bytes),
@@ -218,8 +237,16 @@ pub fn parse(
         Kind::Asf => Err(Blame(name).file("a skeleton", "a motion (`.amc`) of it")),
         Kind::Positions | Kind::TimedPositions => positions::parse(name, bytes, rate_hz),
         Kind::Msr => msr::parse(name, bytes, rate_hz),
-        Kind::Angles if bytes.starts_with(b"PAR1") => unread("Parquet"),
         Kind::Angles => body_angles::parse(name, bytes),
+        Kind::Parquet => match by_own_columns(bytes) {
+            // Its reader tells what is wrong.
+            Some(Kind::Parquet) => body_angles::parse(name, bytes),
+            Some(kind) => parse(kind, name, bytes, rate_hz, skeleton),
+            None => {
+                let (found, expected) = unknown(bytes);
+                Err(Blame(name).file(found, expected))
+            }
+        },
         Kind::C3d => c3d::parse(name, bytes),
         Kind::Zip => Err(Blame(name).file("an archive inside an archive", "a motion")),
     }

@@ -7,6 +7,8 @@ use std::{fmt, io};
 pub enum Place {
     /// A line, counted from 1.
     Line(usize),
+    /// A row of a table that has no lines, counted from 1.
+    Row(usize),
     /// A byte, counted from 0.
     Byte(usize),
     /// The file as a whole.
@@ -69,6 +71,7 @@ impl fmt::Display for FormatError {
         write!(f, "{}", self.file)?;
         match self.place {
             Place::Line(line) => write!(f, ":{line}")?,
+            Place::Row(row) => write!(f, " in row {row}")?,
             Place::Byte(byte) => write!(f, " at byte {byte}")?,
             Place::File => {}
         }

@@ -1,11 +1,13 @@
-//! World positions of a recording as a table: `frame,<joint>_x,<joint>_y,<joint>_z,...`.
+//! World positions of a recording as a table, CSV or Parquet: `frame,<joint>_x,<joint>_y,<joint>_z,...`.
 
+use std::borrow::Cow;
 use std::io::Write;
 
 use kineme::{Format, Recording};
 use nalgebra::Vector3;
 
 use crate::error::{FormatError, Place, Result};
+use crate::parquet::Cells;
 use crate::text::shortest;
 
 /// Axes and unit of written positions.
@@ -53,6 +55,31 @@ pub fn write(recording: &Recording, frame: Frame, out: &mut dyn Write) -> Result
         table.write_record(&row).map_err(failed)?;
     }
     table.flush().map_err(|e| failed(e.into()))
+}
+
+/// As [`write()`], as Parquet: numbers as they are, null where a point was not seen.
+///
+/// # Errors
+/// When the table cannot be made.
+pub fn write_parquet(recording: &Recording, frame: Frame) -> Result<Vec<u8>> {
+    let names = names(recording);
+    let axes = names
+        .iter()
+        .flat_map(|name| ["x", "y", "z"].map(|axis| format!("{name}_{axis}")));
+    let mut columns: Vec<(String, Vec<Option<f64>>)> = axes.map(|a| (a, Vec::new())).collect();
+    for index in 0..recording.frames() {
+        let points = points(recording, frame, index);
+        let values = points
+            .iter()
+            .flat_map(|p| p.map_or([None; 3], |p| [p.x, p.y, p.z].map(Some)));
+        for ((_, column), value) in columns.iter_mut().zip(values) {
+            column.push(value);
+        }
+    }
+    let mut table = vec![("frame".to_owned(), Cells::Count(recording.frames()))];
+    let columns = columns.into_iter();
+    table.extend(columns.map(|(name, column)| (name, Cells::Some(Cow::Owned(column)))));
+    crate::parquet::write(recording.name(), &table)
 }
 
 /// The names of the points, in the order of [`points`].

@@ -1,17 +1,84 @@
-//! Comma-separated tables with a header, read row by row with line numbers.
+//! Tables with named columns, read row by row: comma-separated text with line numbers, or Parquet.
 
-use std::collections::{HashSet, VecDeque};
+use std::collections::HashSet;
 use std::io::Read;
 
-use crate::error::{FormatError, Place, Result};
+use crate::error::{FormatError, Place, Result, told};
+use crate::parquet;
+use crate::stream::{LineStarts, Peeked};
 
 /// A table being read: its header, then its rows.
 pub(crate) struct Sheet<R> {
     file: String,
-    reader: csv::Reader<LineStarts<R>>,
     header: Vec<String>,
-    header_line: usize,
-    record: csv::ByteRecord,
+    header_place: Place,
+    rows: Rows<R>,
+    warnings: Vec<String>,
+}
+
+/// Where rows come from.
+enum Rows<R> {
+    Text {
+        reader: Box<csv::Reader<LineStarts<R>>>,
+        record: csv::ByteRecord,
+    },
+    Numbers {
+        table: parquet::Table,
+        next: usize,
+    },
+}
+
+/// The place of a table's header.
+pub(crate) fn header_place(bytes: &[u8]) -> Place {
+    match parquet::begins(bytes) {
+        true => Place::File,
+        false => Place::Line(1),
+    }
+}
+
+/// The size in bytes that a table of numbers has as text, about: a number takes 8 bytes in Parquet and up to 20 in text.
+pub(crate) fn size_as_text(bytes: &[u8]) -> usize {
+    match parquet::begins(bytes) {
+        true => bytes.len().saturating_mul(2),
+        false => bytes.len(),
+    }
+}
+
+impl<R: Read> Sheet<Peeked<R>> {
+    /// Opens a table of numbers: Parquet, which is read to its end, or text as [`Sheet::open`] does.
+    pub fn open_numbers(file: &str, reader: R, expected: &str) -> Result<Self> {
+        let failed = |e| FormatError::new(file, Place::File, told(&e), "a readable table");
+        let mut reader = Peeked::new(reader, b"PAR1").map_err(failed)?;
+        if !parquet::begins(reader.head()) {
+            return Self::open(file, reader, expected);
+        }
+        let mut bytes = Vec::new();
+        reader.read_to_end(&mut bytes).map_err(failed)?;
+        let mut table = parquet::read(file, &bytes)?;
+        let header = std::mem::take(&mut table.names);
+        let error = |found: String, expected: &str| {
+            Err(FormatError::new(file, Place::File, found, expected))
+        };
+        if header.is_empty() {
+            return error("no column".into(), expected);
+        }
+        if let Some(twice) = twice(&header) {
+            return error(format!("column `{twice}` twice"), "every column once");
+        }
+        Ok(Self {
+            file: file.to_string(),
+            header,
+            header_place: Place::File,
+            warnings: std::mem::take(&mut table.warnings),
+            rows: Rows::Numbers { table, next: 0 },
+        })
+    }
+}
+
+/// A name that stands in a header more than once.
+fn twice(header: &[String]) -> Option<&String> {
+    let mut seen = HashSet::new();
+    header.iter().find(|h| !seen.insert(h.as_str()))
 }
 
 impl<R: Read> Sheet<R> {
@@ -25,10 +92,13 @@ impl<R: Read> Sheet<R> {
             .from_reader(LineStarts::new(reader));
         let mut sheet = Self {
             file: file.to_string(),
-            reader,
             header: Vec::new(),
-            header_line: 1,
-            record: csv::ByteRecord::new(),
+            header_place: Place::Line(1),
+            rows: Rows::Text {
+                reader: Box::new(reader),
+                record: csv::ByteRecord::new(),
+            },
+            warnings: Vec::new(),
         };
         let Some(row) = sheet.read()? else {
             return Err(FormatError::new(
@@ -41,11 +111,10 @@ impl<R: Read> Sheet<R> {
         let header = (0..row.len())
             .map(|i| row.text(i).map(str::to_string))
             .collect::<Result<Vec<_>>>()?;
-        let mut seen = HashSet::new();
-        if let Some(twice) = header.iter().find(|h| !seen.insert(h.as_str())) {
+        if let Some(twice) = twice(&header) {
             return Err(row.error(format!("column `{twice}` twice"), "every column once"));
         }
-        (sheet.header_line, sheet.header) = (row.line(), header);
+        (sheet.header_place, sheet.header) = (row.place, header);
         Ok(sheet)
     }
 
@@ -56,7 +125,12 @@ impl<R: Read> Sheet<R> {
 
     /// An error in the header.
     pub fn header_error(&self, found: impl Into<String>, expected: &str) -> FormatError {
-        FormatError::new(&self.file, Place::Line(self.header_line), found, expected)
+        FormatError::new(&self.file, self.header_place, found, expected)
+    }
+
+    /// What there is to tell people of the table.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
     }
 
     /// The next row, with as many cells as the header; `None` at the end.
@@ -75,104 +149,90 @@ impl<R: Read> Sheet<R> {
     }
 
     fn read(&mut self) -> Result<Option<Row<'_>>> {
-        let more = self
-            .reader
-            .read_byte_record(&mut self.record)
-            .map_err(|e| {
-                FormatError::new(
-                    &self.file,
-                    Place::File,
-                    e.to_string(),
-                    "a comma-separated table",
-                )
-            })?;
-        let start = self.record.position().map_or(0, csv::Position::byte);
-        let line = self.reader.get_mut().line_from(start);
-        Ok(more.then_some(Row {
-            file: &self.file,
-            line,
-            record: &self.record,
-        }))
-    }
-}
-
-/// Passes bytes on and notes where lines begin: `csv` counts neither empty lines nor CRLF as an editor does.
-struct LineStarts<R> {
-    inner: R,
-    offset: u64,
-    line: usize,
-    fresh: bool,
-    /// Offset of the first byte and number of each line that is not empty, those yet to be asked for.
-    starts: VecDeque<(u64, usize)>,
-}
-
-impl<R> LineStarts<R> {
-    fn new(inner: R) -> Self {
-        Self {
-            inner,
-            offset: 0,
-            line: 1,
-            fresh: true,
-            starts: VecDeque::new(),
-        }
-    }
-
-    /// The number, from 1, of the first line that is not empty and begins at `offset` or later.
-    fn line_from(&mut self, offset: u64) -> usize {
-        while self.starts.front().is_some_and(|(at, _)| *at < offset) {
-            self.starts.pop_front();
-        }
-        self.starts.front().map_or(self.line, |(_, line)| *line)
-    }
-}
-
-impl<R: Read> Read for LineStarts<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let count = self.inner.read(buffer)?;
-        for &byte in &buffer[..count] {
-            let ends = matches!(byte, b'\n' | b'\r');
-            if self.fresh && !ends {
-                self.starts.push_back((self.offset, self.line));
+        let file = &self.file;
+        match &mut self.rows {
+            Rows::Text { reader, record } => {
+                let more = reader.read_byte_record(record).map_err(|e| {
+                    let expected = "a comma-separated table";
+                    FormatError::new(file, Place::File, e.to_string(), expected)
+                })?;
+                let start = record.position().map_or(0, csv::Position::byte);
+                let place = Place::Line(reader.get_mut().line_from(start));
+                let cells = Cells::Text(record);
+                Ok(more.then_some(Row { file, place, cells }))
             }
-            self.fresh = ends;
-            self.line += usize::from(byte == b'\n');
-            self.offset += 1;
+            Rows::Numbers { table, next } => {
+                let row = *next;
+                *next += 1;
+                let cells = Cells::Numbers {
+                    header: &self.header,
+                    table,
+                    row,
+                };
+                let place = Place::Row(row + 1);
+                Ok((row < table.rows).then_some(Row { file, place, cells }))
+            }
         }
-        Ok(count)
     }
 }
 
 /// One row of a table.
 pub(crate) struct Row<'a> {
     file: &'a str,
-    line: usize,
-    record: &'a csv::ByteRecord,
+    place: Place,
+    cells: Cells<'a>,
+}
+
+enum Cells<'a> {
+    Text(&'a csv::ByteRecord),
+    Numbers {
+        header: &'a [String],
+        table: &'a parquet::Table,
+        row: usize,
+    },
 }
 
 impl<'a> Row<'a> {
-    /// The row's line, from 1.
+    /// The row's line, from 1, or its number where a table has no lines.
     pub fn line(&self) -> usize {
-        self.line
+        match self.place {
+            Place::Line(line) | Place::Row(line) => line,
+            Place::Byte(_) | Place::File => 1,
+        }
     }
 
     /// The number of cells.
     pub fn len(&self) -> usize {
-        self.record.len()
+        match self.cells {
+            Cells::Text(record) => record.len(),
+            Cells::Numbers { header, .. } => header.len(),
+        }
     }
 
     /// An error on this row.
     pub fn error(&self, found: impl Into<String>, expected: impl Into<String>) -> FormatError {
-        FormatError::new(self.file, Place::Line(self.line), found, expected)
+        FormatError::new(self.file, self.place, found, expected)
     }
 
     /// A cell as text.
     pub fn text(&self, column: usize) -> Result<&'a str> {
-        let cell = self.record.get(column).unwrap_or_default();
+        let Cells::Text(record) = self.cells else {
+            return Err(self.error("a number", "a text"));
+        };
+        let cell = record.get(column).unwrap_or_default();
         std::str::from_utf8(cell).map_err(|_| self.error("bytes that are no text", "UTF-8"))
     }
 
-    /// A cell as a finite number; `None` when it is empty or NaN: missing.
+    /// A cell as a finite number; `None` when it is empty, null or NaN: missing.
     pub fn number(&self, column: usize) -> Result<Option<f64>> {
+        if let Cells::Numbers { header, table, row } = self.cells {
+            let value = table.columns[column][row];
+            if value.is_infinite() {
+                let found = format!("{value} in column {}", quoted(&header[column]));
+                return Err(self.error(found, "a finite number, or nothing"));
+            }
+            return Ok((!value.is_nan()).then_some(value));
+        }
         let text = self.text(column)?;
         if text.is_empty() || text.eq_ignore_ascii_case("nan") {
             return Ok(None);

@@ -60,7 +60,7 @@ pub struct ControlArgs {
     /// .toml) unless their names tell [default: the vocabulary's]
     #[arg(long, value_name = "NAME|FILE")]
     pub body: Option<String>,
-    /// The motion to write, .bvh, .csv or .npz: what the body did
+    /// The motion to write, .bvh, .csv, .parquet or .npz: what the body did
     #[arg(short, long, value_name = "OUT")]
     pub out: Option<PathBuf>,
     /// Write a page that shows what the body did into this folder

@@ -54,7 +54,7 @@ pub struct EncodeArgs {
     /// How movements are encoded
     #[arg(long, value_enum, value_name = "METHOD", default_value = "default")]
     pub method: EncodeMethod,
-    /// Write what the vocabulary's body does: a .bvh, .csv (joint angles) or .npz file, for several motions a folder
+    /// Write what the vocabulary's body does: a .bvh, .csv or .parquet (joint angles) or .npz file, for several motions a folder
     #[arg(short, long, value_name = "ENCODED")]
     pub out: Option<PathBuf>,
     #[command(flatten)]

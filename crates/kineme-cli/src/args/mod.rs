@@ -143,11 +143,13 @@ pub enum Written {
     Bvh,
     /// A table: joint angles of a body, or positions
     Csv,
+    /// The same table as Parquet, for pandas, Polars and DuckDB
+    Parquet,
     /// Arrays for NumPy: rotations or joint angles, and positions
     Npz,
 }
 
-/// Write motions as BVH, CSV or NPZ, as they are or on another body
+/// Write motions as BVH, CSV, Parquet or NPZ, as they are or on another body
 ///
 /// Without --body the recording itself is written, in its own axes and units. With it, its movement is expressed in the
 /// joints of that body first.
@@ -157,6 +159,7 @@ Examples:
   kineme convert take.amc take.bvh                the same skeleton and movement as BVH
   kineme convert take.bvh take.csv --positions    where every joint is, metres, z up
   kineme convert take.bvh angles.csv --body ares  joint angles of Ares, radians
+  kineme convert take.bvh angles.parquet --body ares  the same table as Parquet
   kineme convert take.bvh take.npz --body ares    joint angles and positions as arrays for NumPy
   kineme convert kinect.csv out.bvh --body ares --rate 60
   kineme convert set.zip out/ --to bvh            a folder of outputs, named as the inputs")]
@@ -164,7 +167,7 @@ pub struct ConvertArgs {
     /// A motion file, a folder, or a .zip archive; - is stdin
     #[arg(value_name = "INPUT")]
     pub input: PathBuf,
-    /// The file to write, .bvh, .csv or .npz; for a folder or an archive a folder; - is stdout
+    /// The file to write, .bvh, .csv, .parquet or .npz; for a folder or an archive a folder; - is stdout
     #[arg(value_name = "OUT")]
     pub out: PathBuf,
     /// Express the movement in the joints of this body: ares, adonis, or a robot of an MJCF or URDF file

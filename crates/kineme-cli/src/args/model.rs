@@ -305,7 +305,7 @@ pub struct SynthesizeArgs {
     /// Which of its primitives
     #[arg(value_name = "PRIMITIVE")]
     pub primitive: String,
-    /// The file to write, .bvh, .csv (joint angles) or .npz; - is stdout
+    /// The file to write, .bvh, .csv or .parquet (joint angles) or .npz; - is stdout
     #[arg(short, long, value_name = "OUT")]
     pub out: PathBuf,
     /// The format, where OUT's name does not say it

@@ -168,7 +168,7 @@ fn written(args: &ControlArgs, global: &Global) -> Result<Option<Written>, Failu
     refuse_existing([out.as_path()], global)?;
     let format = Written::of(out).ok_or_else(|| {
         let message = format!("`{}` says no format that can be written", out.display());
-        Failure::usage(message).hint("write .bvh, .csv or .npz")
+        Failure::usage(message).hint("write .bvh, .csv, .parquet or .npz")
     })?;
     Ok(Some(format))
 }

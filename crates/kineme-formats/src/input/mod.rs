@@ -12,7 +12,7 @@ mod walk;
 pub use rates::InputRates;
 
 use std::collections::BTreeSet;
-use std::io::Read;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -162,6 +162,23 @@ impl Location {
             }
             Location::Lost(why) => Err(why.clone()),
         }
+    }
+
+    /// The last `most` bytes, or all where there are fewer.
+    fn end(&self, shown: &str, most: usize, handles: &Handles) -> Result<Vec<u8>> {
+        let Location::File(path) = self else {
+            let mut bytes = self.bytes(shown, None, handles)?;
+            return Ok(bytes.split_off(bytes.len().saturating_sub(most)));
+        };
+        let read = || {
+            let mut file = std::fs::File::open(path)?;
+            let length = file.metadata()?.len();
+            file.seek(SeekFrom::Start(length.saturating_sub(most as u64)))?;
+            let mut bytes = Vec::new();
+            file.take(most as u64).read_to_end(&mut bytes)?;
+            Ok(bytes)
+        };
+        read().map_err(|e| lost(shown, crate::told(&e), "a readable file"))
     }
 }
 

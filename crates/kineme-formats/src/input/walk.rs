@@ -63,8 +63,9 @@ impl Walk {
         let mut bytes = Vec::new();
         match std::io::stdin().lock().read_to_end(&mut bytes) {
             Ok(_) => {
-                let kind = detect::detect("-", &bytes).filter(|kind| *kind != Kind::Zip);
-                self.push("-".into(), kind, Location::Held(bytes.into()));
+                let place = Location::Held(bytes.into());
+                let kind = self.kind("-", &place).filter(|kind| *kind != Kind::Zip);
+                self.push("-".into(), kind, place);
             }
             Err(e) => {
                 let why = lost("-", crate::told(&e), "readable standard input");
@@ -150,7 +151,12 @@ impl Walk {
     fn kind(&self, shown: &str, place: &Location) -> Option<Kind> {
         detect::by_extension(shown).or_else(|| {
             let head = place.bytes(shown, Some(detect::HEAD), &self.handles).ok()?;
-            detect::detect(shown, &head)
+            match detect::detect(shown, &head) {
+                Some(Kind::Parquet) => {
+                    detect::by_columns(|most| place.end(shown, most, &self.handles).ok())
+                }
+                kind => kind,
+            }
         })
     }
 

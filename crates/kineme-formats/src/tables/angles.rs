@@ -2,10 +2,14 @@
 //!
 //! What the columns mean is a body's business: here they are names and numbers.
 
+use std::borrow::Cow;
 use std::io::Read;
 
 use crate::error::{FormatError, Place, Result};
+use crate::parquet;
+use crate::parquet::Cells;
 use crate::sheet::{Row, Sheet, first_cells, quoted};
+use crate::stream::Peeked;
 
 /// The columns every table begins with: seconds, metres (z up), radians.
 pub const FIXED_COLUMNS: [&str; 5] = ["time", "root_x", "root_y", "root_z", "root_yaw"];
@@ -37,7 +41,7 @@ pub struct AngleRow {
 
 /// The rows of a table, read as they come: for streams.
 pub struct AngleRows<R> {
-    sheet: Sheet<R>,
+    sheet: Sheet<Peeked<R>>,
     last_time: Option<f64>,
 }
 
@@ -47,14 +51,15 @@ pub fn sniff(head: &[u8]) -> bool {
 }
 
 impl<R: Read> AngleRows<R> {
-    /// Reads the header of a table named `file` in messages.
+    /// Reads the header of a table named `file` in messages. Of Parquet, whose columns follow one another, it reads
+    /// everything.
     ///
     /// # Errors
     /// When the header does not begin with [`FIXED_COLUMNS`], repeats a name or leaves one empty.
     pub fn open(file: &str, reader: R) -> Result<Self> {
-        let sheet = Sheet::open(file, reader, HEADER)?;
+        let sheet = Sheet::open_numbers(file, reader, HEADER)?;
         let header = sheet.header();
-        let error = |found: String| FormatError::new(file, Place::Line(1), found, HEADER);
+        let error = |found: String| sheet.header_error(found, HEADER);
         for (i, expected) in FIXED_COLUMNS.iter().enumerate() {
             match header.get(i) {
                 Some(cell) if cell == expected => {}
@@ -76,6 +81,11 @@ impl<R: Read> AngleRows<R> {
     /// The names of the joint coordinates.
     pub fn columns(&self) -> &[String] {
         &self.sheet.header()[FIXED_COLUMNS.len()..]
+    }
+
+    /// An error in the header.
+    pub(super) fn header_error(&self, found: impl Into<String>, expected: &str) -> FormatError {
+        self.sheet.header_error(found, expected)
     }
 
     /// The next row; `None` at the end.
@@ -119,12 +129,19 @@ fn angle_row(row: &Row<'_>, last: Option<f64>) -> Result<AngleRow> {
     Ok(AngleRow { time, root, angles })
 }
 
-/// Reads a whole table.
+/// Reads a whole table, CSV or Parquet.
 ///
 /// # Errors
 /// As [`AngleRows::open`] and [`AngleRows::next_row`]; and when the table has no row.
 pub fn parse(name: &str, bytes: &[u8]) -> Result<AngleTable> {
-    let mut rows = AngleRows::open(name, bytes)?;
+    Ok(collect(name, AngleRows::open(name, bytes)?)?.0)
+}
+
+/// The table that rows make, and sentences about it for people.
+pub(super) fn collect<R: Read>(
+    name: &str,
+    mut rows: AngleRows<R>,
+) -> Result<(AngleTable, Vec<String>)> {
     let mut table = AngleTable {
         columns: rows
             .columns()
@@ -148,11 +165,11 @@ pub fn parse(name: &str, bytes: &[u8]) -> Result<AngleTable> {
             "at least one row of angles",
         ));
     }
-    Ok(table)
+    Ok((table, rows.sheet.warnings().to_vec()))
 }
 
 impl AngleTable {
-    /// The table as a file: numbers in the fewest digits that read back as the same f64.
+    /// The table as a CSV file: numbers in the fewest digits that read back as the same f64.
     ///
     /// # Errors
     /// When the table would not read back: no row, columns of different lengths, names that are empty or repeated,
@@ -179,6 +196,25 @@ impl AngleTable {
         writer
             .into_inner()
             .map_err(|e| FormatError::new(name, Place::File, e.to_string(), "memory to write to"))
+    }
+
+    /// The table as a Parquet file: numbers as they are, null where one is missing, columns in the order of the CSV.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub fn write_parquet(&self, name: &str) -> Result<Vec<u8>> {
+        self.check(name)?;
+        let mut columns = Vec::with_capacity(FIXED_COLUMNS.len() + self.columns.len());
+        let [time, root @ ..] = FIXED_COLUMNS;
+        columns.push((time.to_owned(), Cells::All(&self.times)));
+        for (i, of_root) in root.into_iter().enumerate() {
+            let path = self.root.iter().map(|r| r[i]).collect();
+            columns.push((of_root.to_owned(), Cells::Some(Cow::Owned(path))));
+        }
+        for (coordinate, values) in &self.columns {
+            columns.push((coordinate.clone(), Cells::Some(Cow::Borrowed(values))));
+        }
+        parquet::write(name, &columns)
     }
 
     fn check(&self, name: &str) -> Result<()> {

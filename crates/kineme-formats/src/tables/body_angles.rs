@@ -8,11 +8,10 @@ use std::sync::Arc;
 use kineme::{Format, Motion, Recording, Root, Skeleton, Source, adonis, ares};
 use nalgebra::Vector3;
 
-use super::angles;
-use super::angles::AngleTable;
+use super::angles::{self, AngleRows, AngleTable};
 use super::timebase::Clock;
 use crate::error::{FormatError, Place, Result};
-use crate::sheet::quoted;
+use crate::sheet::{header_place, quoted, size_as_text};
 use crate::text::Blame;
 
 /// The table of a motion: times from 0, the root's path, every coordinate of its body.
@@ -48,15 +47,16 @@ pub fn table(motion: &Motion) -> AngleTable {
 /// # Errors
 /// As [`angles::parse`]; when a column is no coordinate of one of the bodies, or the root's cells are not numbers.
 pub fn parse(name: &str, bytes: &[u8]) -> Result<Recording> {
-    let table = angles::parse(name, bytes)?;
-    let body = body_of(name, &table)?;
+    let (table, told) = angles::collect(name, AngleRows::open(name, bytes)?)?;
+    let body = body_of(name, &table, header_place(bytes))?;
     let Filled {
         motion,
         cells,
         unseen,
         mut warnings,
         ..
-    } = fill(name, &table, &body, bytes.len())?;
+    } = fill(name, &table, &body, size_as_text(bytes))?;
+    warnings.extend(told);
     if cells > 0 {
         warnings.push(format!("{cells} cells missing and filled in time"));
     }
@@ -87,7 +87,7 @@ pub(super) struct Filled {
     pub warnings: Vec<String>,
 }
 
-/// Lays a table of a body, from a file of so many bytes, on an even grid of frames without gaps.
+/// Lays a table of a body, from a text of so many bytes, on an even grid of frames without gaps.
 pub(super) fn fill(
     name: &str,
     table: &AngleTable,
@@ -156,7 +156,7 @@ fn refused(name: &str, error: &kineme::Error) -> FormatError {
 }
 
 /// The body whose coordinates the columns are; where they serve both, the one that they fill better.
-fn body_of(name: &str, table: &AngleTable) -> Result<Arc<Skeleton>> {
+fn body_of(name: &str, table: &AngleTable, header: Place) -> Result<Arc<Skeleton>> {
     let mut best: Option<Skeleton> = None;
     let mut strangers: Option<Vec<&str>> = None;
     for built_in in [ares, adonis] {
@@ -177,7 +177,7 @@ fn body_of(name: &str, table: &AngleTable) -> Result<Arc<Skeleton>> {
         let first = strangers.and_then(|s| s.first().copied());
         FormatError::new(
             name,
-            Place::Line(1),
+            header,
             format!("column {}", quoted(first.unwrap_or_default())),
             "columns that are joint coordinates of `ares` or of `adonis`",
         )

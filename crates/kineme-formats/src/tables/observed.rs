@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use super::angles::{self, AngleRow, AngleRows};
 use super::body_angles::{Filled, fill};
 use crate::error::{FormatError, Place, Result};
-use crate::sheet::quoted;
+use crate::sheet::{quoted, size_as_text};
 
 /// A motion with what was missing in it, and what there is to warn of.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +29,7 @@ fn serve(columns: &[String], body: &Skeleton) -> bool {
     !columns.is_empty() && columns.iter().all(|c| known.contains(c))
 }
 
-/// Reads a CSV table of a body; `None` where its columns are not all coordinates of this body.
+/// Reads a table of a body, CSV or Parquet; `None` where its columns are not all coordinates of this body.
 ///
 /// A joint is missing in a frame in which one of its cells is empty, and everywhere where one of its columns is not
 /// there; so is everything in frames that the times leave out.
@@ -37,16 +37,18 @@ fn serve(columns: &[String], body: &Skeleton) -> bool {
 /// # Errors
 /// As [`angles::parse`]; when the times leave far more out than is there.
 pub fn parse(name: &str, bytes: &[u8], body: &Arc<Skeleton>) -> Result<Option<Observed>> {
-    if bytes.starts_with(b"PAR1") || !serve(AngleRows::open(name, bytes)?.columns(), body) {
+    let rows = AngleRows::open(name, bytes)?;
+    if !serve(rows.columns(), body) {
         return Ok(None);
     }
-    let table = angles::parse(name, bytes)?;
+    let (table, told) = angles::collect(name, rows)?;
     let Filled {
         motion,
         missing,
         mut warnings,
         ..
-    } = fill(name, &table, body, bytes.len())?;
+    } = fill(name, &table, body, size_as_text(bytes))?;
+    warnings.extend(told);
     let gone = missing.iter().filter(|m| **m).count();
     let seen = match gone {
         0 => Observations::complete(motion),
@@ -82,7 +84,7 @@ impl<R: Read> ObservedRows<R> {
         let names = body.coordinate_names();
         let error = |found: String| {
             let expected = format!("columns that are joint coordinates of `{}`", body.name());
-            FormatError::new(file, Place::Line(1), found, expected)
+            rows.header_error(found, &expected)
         };
         if rows.columns().is_empty() {
             return Err(error("no joint".into()));

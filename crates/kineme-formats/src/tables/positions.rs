@@ -1,6 +1,7 @@
 //! Joint-position tables: `frame,<joint>_x,<joint>_y,<joint>_z,...` in metres, or `time` in place of `frame`.
 
 use std::collections::HashMap;
+use std::io::Read;
 
 use kineme::{Format, Observed, RecordedJoint, Recording, Source};
 use nalgebra::Vector3;
@@ -29,9 +30,9 @@ pub fn sniff(head: &[u8]) -> bool {
     counted && a_point && !angles::sniff(head)
 }
 
-/// Reads a recording.
+/// Reads a recording from CSV or Parquet.
 ///
-/// An empty cell or NaN makes its point missing; so does a gap in `frame` or `time`, for whole frames. The
+/// An empty cell, null or NaN makes its point missing; so does a gap in `frame` or `time`, for whole frames. The
 /// rate comes from `time`, else it is `rate_hz`, else [`DEFAULT_RATE_HZ`] with a warning. The upward axis is
 /// found from the body's long axis. Where every joint is one of the Kinect's, they get its parents
 /// and stand parents first; else all are roots in the order of the columns.
@@ -40,8 +41,8 @@ pub fn sniff(head: &[u8]) -> bool {
 /// When the header names no joint, lacks a coordinate or repeats a column; when a row has another number of
 /// cells, a cell is no finite number, or `frame` or `time` does not rise.
 pub fn parse(name: &str, bytes: &[u8], rate_hz: Option<f64>) -> Result<Recording> {
-    let mut sheet = Sheet::open(name, bytes, HEADER)?;
-    let columns = Columns::of(name, sheet.header())?;
+    let mut sheet = Sheet::open_numbers(name, bytes, HEADER)?;
+    let columns = Columns::of(&sheet)?;
     let n = columns.joints.len();
 
     let mut clock = timebase::Clock::default();
@@ -57,7 +58,8 @@ pub fn parse(name: &str, bytes: &[u8], rate_hz: Option<f64>) -> Result<Recording
             });
         }
     }
-    let mut warnings = columns.warnings;
+    let mut warnings = sheet.warnings().to_vec();
+    warnings.extend(columns.warnings);
     let grid = clock.grid(name, columns.timed, rate_hz, &mut warnings)?;
 
     let order = kinect_order(&columns.joints);
@@ -97,8 +99,9 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(file: &str, header: &[String]) -> Result<Self> {
-        let error = |found: String| FormatError::new(file, Place::Line(1), found, HEADER);
+    fn of<R: Read>(sheet: &Sheet<R>) -> Result<Self> {
+        let header = sheet.header();
+        let error = |found: String| sheet.header_error(found, HEADER);
         let timed = match header[0].to_lowercase().as_str() {
             "time" => true,
             "frame" => false,

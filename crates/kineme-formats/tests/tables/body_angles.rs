@@ -9,7 +9,7 @@ use kineme_formats::tables::body_angles::table;
 use crate::{refuses, warns};
 
 /// A smooth motion of a body that also turns and walks.
-fn motion(name: &str, frames: usize) -> Motion {
+pub fn motion(name: &str, frames: usize) -> Motion {
     let body = Arc::new(body(name).unwrap());
     let neutral = body.neutral();
     let poses = (0..frames).flat_map(|f| {

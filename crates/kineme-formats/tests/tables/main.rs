@@ -8,6 +8,7 @@ mod manifest;
 mod msr;
 mod npz;
 mod observed;
+mod parquet;
 mod positions;
 mod real_data;
 mod vocabulary;

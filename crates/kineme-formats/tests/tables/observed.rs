@@ -96,7 +96,6 @@ fn a_whole_table_has_nothing_missing_and_other_bodies_are_not_taken() {
     assert!(observed.seen.motion().pose(0).iter().all(|x| *x == 0.1));
     let ares = Arc::new(kineme::body("ares").unwrap());
     assert!(parse("o.csv", text.as_bytes(), &ares).unwrap().is_none());
-    assert!(parse("o.parquet", b"PAR1", &ares).unwrap().is_none());
 }
 
 #[test]
