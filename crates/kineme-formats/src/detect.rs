@@ -2,7 +2,7 @@
 
 use kineme::Recording;
 
-use crate::error::{FormatError, Place, Result};
+use crate::error::Result;
 use crate::tables::{body_angles, msr, positions};
 use crate::text::{Blame, Lines, number, quoted, words};
 use crate::{amc, asf, bvh, c3d, deepmimic, parquet};
@@ -219,7 +219,7 @@ fn table(columns: &[String]) -> Option<Kind> {
 /// that an AMC belongs to.
 ///
 /// # Errors
-/// [`FormatError`] of the format's reader; for an archive or a skeleton, which are no motions.
+/// [`crate::FormatError`] of the format's reader; for an archive or a skeleton, which are no motions.
 pub fn parse(
     kind: Kind,
     name: &str,
