@@ -159,7 +159,7 @@ Examples:
   kineme convert take.amc take.bvh                the same skeleton and movement as BVH
   kineme convert take.bvh take.csv --positions    where every joint is, metres, z up
   kineme convert take.bvh angles.csv --body ares  joint angles of Ares, radians
-  kineme convert take.bvh angles.parquet --body ares  the same table as Parquet
+  kineme convert take.bvh a.parquet --body ares   the same table as Parquet
   kineme convert take.bvh take.npz --body ares    joint angles and positions as arrays for NumPy
   kineme convert kinect.csv out.bvh --body ares --rate 60
   kineme convert set.zip out/ --to bvh            a folder of outputs, named as the inputs")]
