@@ -41,6 +41,7 @@ fn exit_codes_say_what_went_wrong_and_hints_what_to_do() {
             1,
             "hint: give more motion",
         ),
+        ("derive arms.bvh -o v --min-size 1", 2, "at least 2"),
         ("derive arms.bvh -o v --shape 2", 2, "0 to 1"),
         ("derive arms.bvh -o .", 1, ".: found a folder"),
         (

@@ -260,8 +260,8 @@ pub struct DeriveArgs {
     /// Neighbours of a segment in the graph [default: 3 for cut recordings and more where they are many, 8 for clips and marks]
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count)]
     pub neighbours: Option<usize>,
-    /// The smallest group [default: 3 for cut recordings and more where they are many, 5 for clips and marks]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
+    /// The smallest group, 2 or more [default: 3 for cut recordings and more where they are many, 5 for clips and marks]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = group)]
     pub min_size: Option<usize>,
     /// How segments are grouped
     #[arg(long, value_enum, default_value = "hdbscan", value_name = "METHOD")]
@@ -323,6 +323,12 @@ fn count(text: &str) -> Result<usize, String> {
     value
         .filter(|n| *n > 0)
         .ok_or_else(|| "expected a whole number above 0".into())
+}
+
+/// The size of a group: who is alone is in none.
+fn group(text: &str) -> Result<usize, String> {
+    let size = text.parse().ok().filter(|n| *n >= 2);
+    size.ok_or_else(|| "expected a whole number of at least 2".into())
 }
 
 fn threads(text: &str) -> Result<usize, String> {
