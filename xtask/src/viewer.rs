@@ -44,7 +44,7 @@ pub fn test(root: &Path) -> Result<(), String> {
 pub fn screenshot(root: &Path) -> Result<(), String> {
     let demo = root.join("target/viewer/demo");
     crate::commands::demo(root, &["--force", "-o", &demo.display().to_string()])?;
-    let page = demo.join("index.html").display().to_string();
+    let page = demo.join("report.html").display().to_string();
     let picture = root.join("docs/page.png").display().to_string();
     run(
         &root.join("viewer"),

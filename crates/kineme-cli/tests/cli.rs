@@ -298,14 +298,14 @@ fn what_exists_is_overwritten_with_force_alone() {
     }
     // What takes long is refused before it begins: one of its files in the way is enough.
     fs::create_dir(folder.path().join("demo")).expect("a folder");
-    fs::write(folder.path().join("demo/index.html"), "kept").expect("a file");
+    fs::write(folder.path().join("demo/report.html"), "kept").expect("a file");
     let run = kineme(folder.path(), &["demo", "-o", "demo"]);
     assert_eq!(run.code, 2, "{}", run.err);
     assert!(run.err.contains("hint: --force"), "{}", run.err);
     let run = kineme(folder.path(), &["demo", "-o", "demo", "--force"]);
     assert_eq!(run.code, 0, "{}", run.err);
-    let page = fs::read_to_string(folder.path().join("demo/index.html")).expect("a page");
-    assert!(run.out.contains("index.html") && page.len() > 10_000);
+    let page = fs::read_to_string(folder.path().join("demo/report.html")).expect("a page");
+    assert!(run.out.contains("report.html") && page.len() > 10_000);
     // The report alone is in the way, too.
     let run = kineme(
         folder.path(),

@@ -31,7 +31,7 @@ fn a_result_is_shown_as_it_is() {
     let folder = folder();
     let result = folder.path().join("result");
     std::fs::create_dir(&result).expect("a folder");
-    std::fs::write(result.join("index.html"), "a page").expect("a file");
+    std::fs::write(result.join("report.html"), "a page").expect("a file");
     let run = kineme(folder.path(), &["view", "result", "-o", "-"]);
     assert_eq!((run.code, run.out.as_str()), (0, "a page"));
 }

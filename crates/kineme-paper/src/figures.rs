@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use crate::scene::{CardBudget, HOW_TO_READ, Shape, Shown, cards, take_of_derived};
 
 /// The page among the files of a report.
-pub const PAGE: &str = "index.html";
+pub const PAGE: &str = "report.html";
 const TIMELINE: &str = "timeline.svg";
 const TRANSITIONS: &str = "transitions.svg";
 

@@ -28,7 +28,7 @@ pub enum ServoName {
 Examples:
   kineme control boxing.kineme plan.toml --body adonis         on a body of 20 joint angles
   kineme control boxing.kineme plan.toml --body ares -o ring.bvh
-  kineme control boxing.kineme plan.toml --body adonis --report ring    and look at it: ring/index.html
+  kineme control boxing.kineme plan.toml --body adonis --report ring    and look at it: ring/report.html
   kineme control boxing.kineme plan.toml --body g1.xml         on your robot (.urdf serves too)
   kineme control boxing.kineme spar.toml --watch attacker.bvh  answer what another one does
   producer | kineme control boxing.kineme spar.toml --watch -  answer a live stream of joint angles

@@ -230,7 +230,7 @@ pub enum SecondLevelName {
 #[command(after_help = "\
 Examples:
   kineme derive captures/ -o moves.kineme                    continuous recordings
-  kineme derive captures/ -o moves.kineme --report moves     and look at what was found: moves/index.html
+  kineme derive captures/ -o moves.kineme --report moves     and look at what was found: moves/report.html
   kineme derive clips.zip -o moves.kineme --segmenter clips  files that hold one movement each
   kineme derive takes/ -o moves.kineme --marks spans.csv     cut by hand: file,start,end in seconds
   kineme derive takes/ -o moves.kineme --duration 1.5        movements of about this length
@@ -287,7 +287,7 @@ pub struct DeriveArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  kineme demo                     then open kineme-demo/index.html
+  kineme demo                     then open kineme-demo/report.html
   kineme demo -o /tmp/demo --force")]
 pub struct DemoArgs {
     /// The folder to write
