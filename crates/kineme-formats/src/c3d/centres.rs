@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use kineme::retargeting::{Profile, REQUIRED};
-use kineme::{Error, Observed, RecordedJoint, Recording, Role};
+use kineme::{Error, Observed, Recording, Role};
 
-use super::marker;
 use super::marker_sets::{MarkerSet, plain};
 use super::model::joints;
 use super::places::{Path, Places};
+use crate::tables::kinect::observed_joint;
 
 /// The centres of joints as a recording, and which of them plays which role.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,10 +51,10 @@ pub fn joint_centres(
     };
     let centre = |role: Role| format!("{}_centre", role.name());
     let roles: Vec<Role> = paths.keys().copied().collect();
-    let joints = roles.iter().enumerate().map(|(j, role)| RecordedJoint {
-        parent: parent(*role, &roles[..j]),
-        ..marker(centre(*role))
-    });
+    let joints = roles
+        .iter()
+        .enumerate()
+        .map(|(j, role)| observed_joint(&centre(*role), parent(*role, &roles[..j])));
     let frames = 0..recording.frames();
     let positions = frames.flat_map(|f| paths.values().map(move |path| path[f]));
     let profile = Profile {
@@ -74,15 +74,18 @@ pub fn joint_centres(
 /// The nearest of the joints before it on which a role's joint hangs.
 fn parent(role: Role, before: &[Role]) -> Option<usize> {
     use Role::*;
-    let trunk = [Neck, UpperChest, Chest, Spine, Hips];
     let chain: &[Role] = match role {
         Hips => &[],
-        Spine | Chest | UpperChest | Neck | Head | LeftShoulder | RightShoulder => &trunk,
+        Spine | Chest | UpperChest | Neck | Head | LeftShoulder | RightShoulder => {
+            &[Neck, UpperChest, Chest, Spine, Hips]
+        }
         LeftUpperArm => &[LeftShoulder, Neck, UpperChest, Chest, Spine, Hips],
         RightUpperArm => &[RightShoulder, Neck, UpperChest, Chest, Spine, Hips],
         LeftUpperLeg | RightUpperLeg => &[Hips],
-        // Limbs are listed from the root to the tip.
-        _ => return before.len().checked_sub(1),
+        LeftLowerArm | LeftHand | LeftFingers => &[LeftHand, LeftLowerArm, LeftUpperArm],
+        RightLowerArm | RightHand | RightFingers => &[RightHand, RightLowerArm, RightUpperArm],
+        LeftLowerLeg | LeftFoot | LeftToes => &[LeftFoot, LeftLowerLeg, LeftUpperLeg],
+        RightLowerLeg | RightFoot | RightToes => &[RightFoot, RightLowerLeg, RightUpperLeg],
     };
     let find = |wanted: &Role| before.iter().position(|b| b == wanted);
     chain.iter().find_map(find)

@@ -11,14 +11,15 @@ mod parameters;
 mod places;
 
 use kineme::math::rotation::Axis;
-use kineme::{Format, Observed, RecordedJoint, Recording, Source};
+use kineme::{Format, Observed, Recording, Source};
 use nalgebra::Vector3;
 
 pub use centres::{Centred, joint_centres};
 
 use crate::error::{FormatError, Place, Result};
+use crate::tables::kinect::observed_joint;
 use crate::tables::upright;
-use crate::text::{Blame, make_unique};
+use crate::text::{Blame, make_unique, quoted};
 use parameters::{BLOCK, KEY, Parameters};
 
 /// Whether a file that starts with these bytes is a C3D file. The first byte counts blocks, so it is small, and no text.
@@ -54,21 +55,9 @@ pub fn parse(name: &str, bytes: &[u8]) -> Result<Recording> {
     };
     let positions = seen.iter().map(|p| p.map(|p| source.to_inner(p)));
     let observed = Observed::Positions(positions.collect());
-    let joints = names.into_iter().map(marker).collect();
+    let joints = names.iter().map(|n| observed_joint(n, None)).collect();
     Recording::new(name, source, joints, layout.rate_hz, observed)
         .map_err(|e| Blame(name).refused(e))
-}
-
-/// A marker as a joint: it stands by itself and says where, not how it is turned.
-fn marker(name: String) -> RecordedJoint {
-    RecordedJoint {
-        name,
-        parent: None,
-        offset: Vector3::zeros(),
-        tip: None,
-        order: None,
-        dof: 3,
-    }
 }
 
 /// Where the points lie in the file.
@@ -248,7 +237,7 @@ fn unit(parameters: &Parameters<'_>, warnings: &mut Vec<String>) -> f64 {
             None => "no unit of length: millimetres assumed".into(),
             Some(unit) => format!(
                 "unit of length {}: millimetres assumed",
-                Parameters::told("POINT", "UNITS", &unit)
+                quoted(unit.as_bytes())
             ),
         });
         0.001

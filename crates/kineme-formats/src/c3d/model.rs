@@ -44,32 +44,21 @@ pub fn joints(markers: &Places<'_>, set: &MarkerSet) -> BTreeMap<Role, Path> {
             Some(markers.at(f, side.shoulder)? + SHOULDER * shoulders * down)
         })
     });
-    let roles = [
-        [
-            LeftUpperArm,
-            LeftLowerArm,
-            LeftHand,
-            LeftFingers,
-            LeftUpperLeg,
-            LeftLowerLeg,
-            LeftFoot,
-            LeftToes,
-        ],
-        [
-            RightUpperArm,
-            RightLowerArm,
-            RightHand,
-            RightFingers,
-            RightUpperLeg,
-            RightLowerLeg,
-            RightFoot,
-            RightToes,
-        ],
+    let left = [
+        LeftUpperArm,
+        LeftLowerArm,
+        LeftHand,
+        LeftFingers,
+        LeftUpperLeg,
+        LeftLowerLeg,
+        LeftFoot,
+        LeftToes,
     ];
+    let roles = [left, left.map(Role::mirrored)];
     for (k, side) in [&set.left, &set.right].into_iter().enumerate() {
         let other = 1 - k;
         let right = if k == 1 { 1.0 } else { -1.0 };
-        let mut limb = Limb {
+        let arm = Limb {
             markers,
             hinge: side.elbow,
             reach: ELBOW * pelvis.width,
@@ -77,12 +66,12 @@ pub fn joints(markers: &Places<'_>, set: &MarkerSet) -> BTreeMap<Role, Path> {
             bend: right,
         };
         let wrist = markers.middle(&side.wrist);
-        let (elbow, _) = limb.centre(&arms[k], &arms[other], &wrist);
+        let (elbow, _) = arm.centre(&arms[k], &arms[other], &wrist);
         let mut own = vec![Some(arms[k].clone()), Some(elbow)];
         own.push((!side.wrist.is_empty()).then_some(wrist));
         own.push(side.fingers.map(|m| markers.middle(&[m])));
         own.push(Some(hips[k].clone()));
-        own.extend(leg(&mut limb, side, &hips[k], &hips[other], &pelvis, right));
+        own.extend(leg(markers, side, &hips[k], &hips[other], &pelvis, right));
         own.push(side.toes.map(|m| markers.middle(&[m])));
         let own = roles[k].into_iter().zip(own);
         paths.extend(own.filter_map(|(role, path)| Some((role, path?))));
@@ -93,8 +82,8 @@ pub fn joints(markers: &Places<'_>, set: &MarkerSet) -> BTreeMap<Role, Path> {
 }
 
 /// Knee and ankle.
-fn leg<'m>(
-    limb: &mut Limb<'m>,
+fn leg(
+    markers: &Places<'_>,
     side: &Side,
     hip: &[Point],
     other: &[Point],
@@ -104,10 +93,8 @@ fn leg<'m>(
     let Some(knee) = side.knee else {
         return [None, None];
     };
-    let markers = limb.markers;
     let marked = side.ankle.map(|a| markers.middle(&a.marked()));
-    // Knees bend the other way.
-    *limb = Limb {
+    let leg = Limb {
         markers,
         hinge: knee,
         reach: KNEE * pelvis.width,
@@ -115,14 +102,15 @@ fn leg<'m>(
             Some(Knob { inner: None, .. }) => ANKLE * pelvis.width,
             _ => 0.0,
         },
+        // Knees bend the other way than elbows.
         bend: -right,
     };
     let unseen = vec![None; markers.frames];
-    let (knee, axis) = limb.centre(hip, other, marked.as_deref().unwrap_or(&unseen));
+    let (knee, axis) = leg.centre(hip, other, marked.as_deref().unwrap_or(&unseen));
     let ankle = marked.map(|ends| {
         each(markers.frames, |f| {
             let end = ends[f]?;
-            Some(inward(&knee[f]?, &end, &axis[f]?, limb.end_reach))
+            Some(inward(&knee[f]?, &end, &axis[f]?, leg.end_reach))
         })
     });
     [Some(knee), ankle]
@@ -202,25 +190,21 @@ impl Limb<'_> {
             let outer = self.markers.at(f, self.hinge.outer)?;
             let root = root[f]?;
             let limb = (outer - root).try_normalize(1e-9)?;
-            let mut axis = match (self.hinge.inner, before) {
-                (Some(inner), _) => (self.markers.at(f, inner)? - outer).try_normalize(1e-9)?,
-                (None, Some([limb_before, axis])) => shortest(&limb_before, &limb) * axis,
-                (None, None) => {
+            if let Some(inner) = self.hinge.inner {
+                let inner = self.markers.at(f, inner)?;
+                axes[f] = (inner - outer).try_normalize(1e-9);
+                return Some(0.5 * (outer + inner));
+            }
+            let mut axis = match before {
+                Some([limb_before, axis]) => shortest(&limb_before, &limb) * axis,
+                None => {
                     let hung = -Vector3::z();
                     shortest(&hung, &limb) * (other[f]? - root).try_normalize(1e-9)?
                 }
             };
-            let mut centre = match self.hinge.inner {
-                Some(inner) => 0.5 * (outer + self.markers.at(f, inner)?),
-                None => inward(&root, &outer, &axis, self.reach),
-            };
+            let mut centre = inward(&root, &outer, &axis, self.reach);
             // The bend is that of the centres, which the axis moves a little.
-            let rounds = if self.hinge.inner.is_some() {
-                0
-            } else {
-                ROUNDS
-            };
-            for _ in 0..rounds {
+            for _ in 0..ROUNDS {
                 let Some(end) = end[f] else { break };
                 let end = inward(&centre, &end, &axis, self.end_reach);
                 let up = (root - centre).try_normalize(1e-9);

@@ -1,7 +1,7 @@
 //! The header and the parameters of a C3D file: numbers in the writer's own byte order, named values in groups.
 
 use crate::error::{FormatError, Place, Result};
-use crate::text::{decoded, quoted};
+use crate::text::decoded;
 
 /// Bytes of a block, in which places of sections are counted.
 pub const BLOCK: usize = 512;
@@ -191,11 +191,6 @@ impl<'a> Parameters<'a> {
     pub fn text(&self, group: &str, name: &str) -> Option<String> {
         let text = self.texts(group, name).into_iter().next()?;
         (!text.is_empty()).then_some(text)
-    }
-
-    /// What a parameter says, for a message.
-    pub fn told(group: &str, name: &str, value: &str) -> String {
-        format!("{group}:{name} {}", quoted(value.as_bytes()))
     }
 }
 

@@ -2,7 +2,7 @@
 
 pub mod angles;
 pub mod body_angles;
-mod kinect;
+pub(crate) mod kinect;
 pub mod msr;
 pub mod observed;
 pub mod positions;

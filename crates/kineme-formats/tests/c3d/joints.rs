@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use kineme::choreography::perform;
 use kineme::retargeting::{Profile, retarget};
-use kineme::{Motion, Recording, Role, Skeleton, ares};
+use kineme::{Motion, RecordedJoint, Recording, Role, Skeleton, ares};
 use kineme_formats::c3d::{joint_centres, parse};
 use kineme_formats::script;
 use nalgebra::Vector3;
@@ -251,6 +251,44 @@ fn a_marker_at_the_inside_makes_a_hinge_exact() {
     )
     .expect("a recording");
     assert!(errors(&motion, &recording)["left_lower_arm"] < 1e-6);
+}
+
+#[test]
+fn waists_named_as_in_cmu_and_hdm05_say_the_same_and_limbs_hang_together() {
+    let recording = file(&acted(), &[]);
+    let renamed = recording.joints().iter().map(|joint| RecordedJoint {
+        name: joint.name.replace("ASI", "FWT").replace("PSI", "BWT"),
+        ..joint.clone()
+    });
+    let other = Recording::new(
+        recording.name(),
+        recording.source().clone(),
+        renamed.collect(),
+        recording.rate_hz(),
+        recording.observed().clone(),
+    )
+    .expect("a recording");
+    let centred = joint_centres(&recording, None).expect("markers");
+    assert_eq!(joint_centres(&other, None).expect("markers"), centred);
+    let joints = centred.expect("a known set").recording.joints().to_vec();
+    for (joint, hangs_on) in [
+        ("hips", None),
+        ("neck", Some("hips")),
+        ("head", Some("neck")),
+        ("right_upper_arm", Some("neck")),
+        ("right_lower_arm", Some("right_upper_arm")),
+        ("left_fingers", Some("left_hand")),
+        ("left_upper_leg", Some("hips")),
+        ("right_toes", Some("right_foot")),
+    ] {
+        let own = joints.iter().find(|j| j.name == format!("{joint}_centre"));
+        let parent = own
+            .expect("a joint")
+            .parent
+            .map(|p| joints[p].name.as_str());
+        let wanted = hangs_on.map(|p| format!("{p}_centre"));
+        assert_eq!(parent, wanted.as_deref(), "{joint}");
+    }
 }
 
 #[test]
