@@ -1,4 +1,4 @@
-//! The five vocabularies of `choreography/` as models: what is asked of primitives, on exemplars written by hand.
+//! The six vocabularies of `choreography/` as models: what is asked of primitives, on exemplars written by hand.
 
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
@@ -9,12 +9,13 @@ use kineme::{Modelling, Primitive, Vocabulary, ares};
 use nalgebra::{UnitQuaternion, Vector3};
 use rand::{Rng, RngExt, SeedableRng};
 
-const SCRIPTS: [(&str, &str, usize); 5] = [
+const SCRIPTS: [(&str, &str, usize); 6] = [
     ("boxing", "right_hand", 5),
     ("punching", "right_hand", 2),
     ("vertical-waving", "right_hand", 2),
     ("horizontal-waving", "right_hand", 2),
     ("twist", "right_hand", 2),
+    ("greeting", "right_hand", 2),
 ];
 
 static VOCABULARIES: LazyLock<Vec<Vocabulary>> = LazyLock::new(|| {

@@ -1,4 +1,4 @@
-//! The five vocabularies written by hand: that they can be read and performed, and that they say what they mean.
+//! The six vocabularies written by hand: that they can be read and performed, and that they say what they mean.
 
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -25,7 +25,7 @@ struct File {
     pair: bool,
 }
 
-const FILES: [File; 5] = [
+const FILES: [File; 6] = [
     File {
         name: "boxing",
         adverbs: ["height", "side"],
@@ -54,6 +54,12 @@ const FILES: [File; 5] = [
         name: "twist",
         adverbs: ["amplitude", "arms"],
         primitives: &["twist-left", "twist-right"],
+        pair: true,
+    },
+    File {
+        name: "greeting",
+        adverbs: ["amplitude", "height"],
+        primitives: &["greet-in", "greet-out"],
         pair: true,
     },
 ];
@@ -453,6 +459,18 @@ fn adverbs_move_the_body_the_way_their_names_say() {
             "wave-return",
             [Travel(right, Axis::Y), Level(right)],
             0.25,
+            true,
+        ),
+        (
+            "greet-in",
+            [Travel(right, Axis::Y), Level(right)],
+            0.1,
+            true,
+        ),
+        (
+            "greet-out",
+            [Travel(right, Axis::Y), Level(right)],
+            0.1,
             true,
         ),
         ("twist-left", [Turn, Level(right)], 0.25, false),

@@ -25,6 +25,13 @@ pub const SCRIPTS: [(&str, &str); 5] = [
     ("twist", include_str!("../../../choreography/twist.toml")),
 ];
 
+/// How people greet: waves of the forearm, and of the arm as a pendulum on its head. It belongs to the set of horizontal
+/// waving where people's waves are judged, and to none of the vocabularies above.
+pub const GREETING: (&str, &str) = (
+    "greeting",
+    include_str!("../../../choreography/greeting.toml"),
+);
+
 /// One of them on a body.
 ///
 /// # Errors

@@ -98,8 +98,8 @@ fn decisions_count_inside_a_stroke_while_the_hand_goes_on() {
         (2.4, 2.6, Some(1)),
         (2.6, 2.8, None),
     ];
-    assert_eq!(tally(&paths, 0, 0, &taken), [[1, 1], [0, 1]]);
-    assert_eq!(tally(&paths, 0, 1, &taken), [[1, 1], [1, 0]]);
+    assert_eq!(tally(&paths, 0, &[0], &taken), [[1, 1], [0, 1]]);
+    assert_eq!(tally(&paths, 0, &[1], &taken), [[1, 1], [1, 0]]);
 }
 
 #[test]

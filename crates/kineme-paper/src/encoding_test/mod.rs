@@ -1,5 +1,5 @@
 //! The trajectory encoding test (paper, section V-C): captured motions, seen by the hands alone, applied to four sets of
-//! primitives. Which set is each encoded by, and inside its own set, which of the two primitives is each decision?
+//! primitives. Which set is each encoded by, and inside its own set, does each decision go the way the hand goes?
 
 mod answers;
 mod movement;
@@ -23,8 +23,8 @@ pub use movement::{Hand, Movement, costs, enlarged, knuckled, one_handed, one_ha
 pub use questions::{Question, RESEMBLING, SETS, Truth};
 pub use strokes::{RISING, Taken, Told, coordinate, strokes, tally};
 
-use self::questions::{Asked, asked};
-use crate::choreographies::{SCRIPTS, choreography};
+use self::questions::{Asked, HORIZONTAL, asked};
+use crate::choreographies::{GREETING, SCRIPTS, choreography};
 use crate::sets::Result;
 
 /// A way of encoding and its answers.
@@ -74,11 +74,12 @@ pub fn vocabulary(body: &Arc<Skeleton>) -> Result<(Vocabulary, Vec<usize>)> {
     let mut primitives: Vec<Primitive> = Vec::new();
     let mut sets = Vec::new();
     for (k, set) in SETS.iter().enumerate() {
-        let script = SCRIPTS.iter().find(|(name, _)| name == set);
-        let (name, text) = script.ok_or("no such script")?;
-        for primitive in choreography(name, text, body)?.primitives() {
-            primitives.push(primitive.clone());
-            sets.push(k);
+        let own = SCRIPTS.iter().filter(|(name, _)| name == set);
+        for (name, text) in own.chain((k == HORIZONTAL).then_some(&GREETING)) {
+            for primitive in choreography(name, text, body)?.primitives() {
+                primitives.push(primitive.clone());
+                sets.push(k);
+            }
         }
     }
     let transitions = Transitions::none(primitives.len());
@@ -201,7 +202,7 @@ fn stroke_by_stroke(
     let free = Encoder::new(vocabulary, &one_handed())?;
     let mut alone = Vec::new();
     for set in 0..SETS.len() {
-        let (own, rising) = strokes::own(vocabulary, sets, set)?;
+        let (own, rising) = strokes::own(vocabulary, sets, set);
         let primitives = own.iter().map(|p| vocabulary.primitives()[*p].clone());
         let transitions = Transitions::none(own.len());
         let body = Arc::clone(vocabulary.body());
@@ -224,7 +225,7 @@ fn stroke_by_stroke(
                     true => strokes::by_the_paper(&papers[set], hand, own)?,
                     false => strokes::by_hypotheses(&free, hand, own)?,
                 };
-                let more = tally(hand, set, *rising, &taken);
+                let more = tally(hand, set, rising, &taken);
                 for (sum, more) in counts.iter_mut().flatten().zip(more.iter().flatten()) {
                     *sum += more;
                 }

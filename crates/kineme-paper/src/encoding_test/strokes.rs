@@ -1,4 +1,4 @@
-//! Stroke by stroke inside its own set: which of its two primitives is each decision given to?
+//! Stroke by stroke inside its own set: is each decision given to a primitive that goes the same way?
 
 use kineme::Vocabulary;
 use kineme::evaluation::{Bootstrap, Estimate};
@@ -7,8 +7,13 @@ use kineme::perception::encoding::{EffectorPaths, Encoder};
 use super::{Question, SETS};
 use crate::sets::Result;
 
-/// Of each set, the primitive in which the coordinate of [`coordinate`] rises.
-pub const RISING: [&str; SETS.len()] = ["wave-up", "punch-out", "twist-left", "wave-across"];
+/// Of each set, the primitives in which the coordinate of [`coordinate`] rises.
+pub const RISING: [&[&str]; SETS.len()] = [
+    &["wave-up"],
+    &["punch-out"],
+    &["twist-left"],
+    &["wave-across", "greet-in"],
+];
 /// A turn of direction counts when the coordinate went back by so much, in reaches (of the twist: radians).
 const TURN: f64 = 0.15;
 /// Slower than this along its coordinate, reaches a second, a hand makes no stroke.
@@ -98,7 +103,12 @@ pub fn strokes(values: &[f64]) -> Vec<(usize, usize, bool)> {
 }
 
 /// Counts the decisions that lie wholly inside one stroke of a hand in which it does not rest: `[stroke][answer]`.
-pub fn tally(paths: &EffectorPaths, set: usize, rising: usize, taken: &[Taken]) -> [[usize; 2]; 2] {
+pub fn tally(
+    paths: &EffectorPaths,
+    set: usize,
+    rising: &[usize],
+    taken: &[Taken],
+) -> [[usize; 2]; 2] {
     let values = coordinate(paths, set);
     let rate = paths.rate_hz();
     let mut counts = [[0; 2]; 2];
@@ -111,7 +121,7 @@ pub fn tally(paths: &EffectorPaths, set: usize, rising: usize, taken: &[Taken]) 
             let gone = at(&values, end * rate) - at(&values, start * rate);
             let along = if rises { gone } else { -gone };
             if along >= SLOW * (end - start) {
-                counts[usize::from(!rises)][usize::from(primitive != rising)] += 1;
+                counts[usize::from(!rises)][usize::from(!rising.contains(&primitive))] += 1;
             }
         }
     }
@@ -158,15 +168,12 @@ pub fn by_the_paper(
         .collect())
 }
 
-/// The set's primitives in `all`, and the one in which the coordinate rises.
-///
-/// # Errors
-/// When the set has no such primitive.
-pub fn own(all: &Vocabulary, sets: &[usize], set: usize) -> Result<(Vec<usize>, usize)> {
+/// The set's primitives in `all`, and those in which the coordinate rises.
+pub fn own(all: &Vocabulary, sets: &[usize], set: usize) -> (Vec<usize>, Vec<usize>) {
     let own: Vec<usize> = (0..sets.len()).filter(|p| sets[*p] == set).collect();
-    let named = |p: &&usize| all.primitives()[**p].name() == RISING[set];
-    let rising = own.iter().find(named).ok_or("no such primitive")?;
-    Ok((own.clone(), *rising))
+    let rises = |p: &usize| RISING[set].contains(&all.primitives()[*p].name());
+    let rising = own.iter().copied().filter(rises).collect();
+    (own, rising)
 }
 
 /// The share of right decisions, with its interval by resampling recordings; `None` without a decision.

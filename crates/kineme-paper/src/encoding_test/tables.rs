@@ -103,8 +103,8 @@ impl EncodingTest {
     fn strokes(&self, out: &mut String) -> Result<()> {
         writeln!(
             out,
-            "\n### Stroke by stroke inside its own set\n\nEach hand's wrist while it is away from rest, applied to the two \
-             primitives that it resembles. The truth is the hand's own direction: its height; its horizontal distance from between the \
+            "\n### Stroke by stroke inside its own set\n\nEach hand's wrist while it is away from rest, applied to the \
+             primitives of the set that it resembles. The truth is the hand's own direction: its height; its horizontal distance from between the \
              shoulders; its bearing around them; how far left it is. A stroke goes from turning point to turning point \
              (0.15 of the reach back, or radians); counted are decisions wholly inside one, at 0.2 reaches a second along \
              it or more. Shares in hundred; intervals by resampling recordings.\n\n\
@@ -131,7 +131,8 @@ impl EncodingTest {
                     "| {name} | {} | {} | {} | {} | {} | {}, {} | {}, {} |",
                     set.map_or("all".into(), |s| format!(
                         "{} ({} rises)",
-                        SETS[s], RISING[s]
+                        SETS[s],
+                        RISING[s].join(", ")
                     )),
                     own.len(),
                     own.iter().map(|t| t.right().1).sum::<usize>(),

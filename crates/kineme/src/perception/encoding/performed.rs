@@ -122,8 +122,9 @@ impl EffectorPaths {
 
     /// The frames of a range at which an effector turns back, in order: it comes from one side and leaves to the same
     /// one, by more than 107 degrees, both ways looked at to where they are 0.08 of the reach away. Of frames on end that
-    /// do, as around the end of a stroke or while a hand is held, the middle one. The same in space whatever the direction,
-    /// and in time forward and backward but for a frame.
+    /// do, as around the end of a stroke, the middle one; so too of turning points between which it gets no farther than
+    /// that, as while a hand is held. The same in space whatever the direction, and in time forward and backward but for
+    /// a frame.
     pub fn turning_points(&self, effector: usize, within: Range<usize>) -> Vec<usize> {
         let path = self.smoothed(effector);
         let far = TURN * self.reach_m().unwrap_or(1.0);
@@ -145,7 +146,13 @@ impl EffectorPaths {
             }
         }
         points.extend(first.map(|first| (first + end - 1) / 2));
-        points
+        // A hand that is held trembles: without a way between them these are one turning point.
+        let stays = |a: &usize, b: &usize| {
+            let off = |f: usize| gap(*a, f).norm().max(gap(f, *b).norm());
+            (*a..=*b).all(|f| off(f) < far)
+        };
+        let held = points.chunk_by(stays);
+        held.map(|h| (h[0] + h[h.len() - 1]) / 2).collect()
     }
 
     /// The frames, two at least where there are, in which an effector (an index) is away from rest: from the first to the
