@@ -42,12 +42,23 @@ export async function until(page, there, argument, ms = 60000) {
   }
 }
 
-/** How many pictures a canvas has shown. */
-const drawn = (selector) => Number(document.querySelector(selector)?.dataset.drawn ?? 0);
-
-/** Does something and waits until the canvas shows another picture. */
+/** Does something and waits until the canvas shows a picture that knows of it: one drawn after the first `input` or `click`
+ * came of it. A picture may be drawn anew at any time, sharper or less sharp, so what was counted earlier tells nothing. */
 export async function redrawn(page, selector, act) {
-  const before = await page.evaluate(drawn, selector);
+  await page.evaluate((selector) => {
+    const canvas = document.querySelector(selector);
+    delete canvas.dataset.before;
+    const first = new AbortController();
+    for (const event of ["input", "click"]) {
+      document.addEventListener(event, () => {
+        canvas.dataset.before = canvas.dataset.drawn ?? "0";
+        first.abort();
+      }, { capture: true, signal: first.signal });
+    }
+  }, selector);
   await act();
-  await until(page, ([selector, before]) => Number(document.querySelector(selector)?.dataset.drawn ?? 0) > before, [selector, before]);
+  await until(page, (selector) => {
+    const { before, drawn } = document.querySelector(selector).dataset;
+    return before !== undefined && Number(drawn) > Number(before);
+  }, selector);
 }

@@ -67,6 +67,25 @@ fn the_hands_that_move_are_judged_and_the_left_one_in_the_mirror() {
 }
 
 #[test]
+fn between_two_turning_points_there_is_a_way() {
+    for step in 0..60 {
+        let paths = waving(0.0025 * f64::from(step), 0.0);
+        let (path, reach) = (paths.smoothed(1), paths.reach_m().expect("a reach"));
+        let points = paths.turning_points(1, paths.away(1));
+        assert!(!points.is_empty(), "step {step}: raised and lowered");
+        for pair in points.windows(2) {
+            let between = &path[pair[0]..=pair[1]];
+            let off = |p: &Vector3<f64>| {
+                let ends = [between[0], between[between.len() - 1]];
+                ends.map(|e| (p - e).norm()).into_iter().fold(0.0, f64::max)
+            };
+            let way = between.iter().map(off).fold(0.0, f64::max) / reach;
+            assert!(way >= 0.08, "step {step}, {pair:?}: {way} of the reach");
+        }
+    }
+}
+
+#[test]
 fn strokes_go_from_turning_point_to_turning_point() {
     type Strokes<'a> = &'a [(usize, usize, bool)];
     let cases: [(&[f64], Strokes); 5] = [

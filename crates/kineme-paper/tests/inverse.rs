@@ -10,12 +10,13 @@ use kineme_paper::inverse::inverse;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-const SCRIPTS: [&str; 5] = [
+const SCRIPTS: [&str; 6] = [
     "boxing",
     "punching",
     "vertical-waving",
     "horizontal-waving",
     "twist",
+    "greeting",
 ];
 
 static VOCABULARIES: LazyLock<Vec<Vocabulary>> = LazyLock::new(|| SCRIPTS.map(vocabulary).into());
