@@ -130,7 +130,7 @@ impl EncodingTest {
                     out,
                     "| {name} | {} | {} | {} | {} | {} | {}, {} | {}, {} |",
                     set.map_or("all".into(), |s| format!(
-                        "{} ({} rises)",
+                        "{} (rising: {})",
                         SETS[s],
                         RISING[s].join(", ")
                     )),
