@@ -75,7 +75,7 @@ pub fn vocabulary(body: &Arc<Skeleton>) -> Result<(Vocabulary, Vec<usize>)> {
     let mut sets = Vec::new();
     for (k, set) in SETS.iter().enumerate() {
         let own = SCRIPTS.iter().filter(|(name, _)| name == set);
-        for (name, text) in own.chain((k == HORIZONTAL).then_some(&GREETING)) {
+        for (name, text) in own.chain((Some(k) == HORIZONTAL).then_some(&GREETING)) {
             for primitive in choreography(name, text, body)?.primitives() {
                 primitives.push(primitive.clone());
                 sets.push(k);
