@@ -1,4 +1,4 @@
-//! Behaviours of the five vocabularies of `choreography/` on one body: any follows any other at any moment, some at a
+//! Behaviours of the six vocabularies of `choreography/` on one body: any follows any other at any moment, some at a
 //! time, one interrupts another.
 
 use std::path::Path;
@@ -13,12 +13,13 @@ use kineme::{Primitive, Root, Skeleton, Vocabulary, adonis, ares};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-const SCRIPTS: [&str; 5] = [
+const SCRIPTS: [&str; 6] = [
     "boxing",
     "punching",
     "vertical-waving",
     "horizontal-waving",
     "twist",
+    "greeting",
 ];
 
 static ADONIS: LazyLock<Vocabulary> = LazyLock::new(|| all(adonis().expect("adonis")));

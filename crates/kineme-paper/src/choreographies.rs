@@ -7,7 +7,7 @@ use kineme::{Skeleton, Vocabulary};
 
 use crate::sets::Result;
 
-/// The five vocabularies, by name.
+/// The five vocabularies of the paper's movements, by name.
 pub const SCRIPTS: [(&str, &str); 5] = [
     ("boxing", include_str!("../../../choreography/boxing.toml")),
     (
@@ -26,7 +26,7 @@ pub const SCRIPTS: [(&str, &str); 5] = [
 ];
 
 /// How people greet: waves of the forearm, and of the arm as a pendulum on its head. It belongs to the set of horizontal
-/// waving where people's waves are judged, and to none of the vocabularies above.
+/// waving where people's waves are judged. The paper has no such movement.
 pub const GREETING: (&str, &str) = (
     "greeting",
     include_str!("../../../choreography/greeting.toml"),
@@ -42,7 +42,7 @@ pub fn choreography(name: &str, text: &str, body: &Arc<Skeleton>) -> Result<Voca
     Ok(script.vocabulary(body, &Modelling::default(), (&file, None))?)
 }
 
-/// The primitives of all five as one vocabulary.
+/// The primitives of the paper's movements as one vocabulary.
 ///
 /// # Errors
 /// Never for the embedded scripts on a built-in body.

@@ -50,7 +50,7 @@ impl Act {
 /// A show, as it came out.
 #[derive(Debug, Clone)]
 pub struct Show {
-    /// The written primitives of all five vocabularies, of Ares.
+    /// The primitives of the paper's movements, of Ares.
     pub movements: Vocabulary,
     /// Those of boxing.
     pub boxing: Vocabulary,

@@ -1,8 +1,9 @@
 //! The encoding test's own rules: whose movement, which set, which strokes.
 
-use kineme::perception::encoding::EffectorPaths;
+use kineme::perception::encoding::{EffectorPaths, EncodingSettings};
 use kineme_paper::encoding_test::{
-    Answer, Costs, Movement, Question, enlarged, knuckled, limit, strokes, tally,
+    Answer, Costs, Movement, Question, RISING, coordinate, enlarged, knuckled, limit, strokes,
+    tally, vocabulary,
 };
 use nalgebra::Vector3;
 
@@ -97,6 +98,28 @@ fn strokes_go_from_turning_point_to_turning_point() {
     ];
     for (values, wanted) in cases {
         assert_eq!(strokes(values), wanted, "{values:?}");
+    }
+}
+
+#[test]
+fn half_of_each_set_goes_the_way_its_coordinate_rises() {
+    let body = std::sync::Arc::new(kineme::ares().expect("ares"));
+    let (all, sets) = vocabulary(&body).expect("a vocabulary");
+    let heading_secs = EncodingSettings::default().heading_secs;
+    for (set, rising) in RISING.iter().enumerate() {
+        let places = (0..sets.len()).filter(|p| sets[*p] == set);
+        let own: Vec<_> = places.map(|p| &all.primitives()[p]).collect();
+        assert_eq!(own.len(), 2 * rising.len(), "set {set}");
+        for primitive in own {
+            let rises = rising.contains(&primitive.name());
+            for e in primitive.exemplars() {
+                let hand = ["right_hand".into()];
+                let paths = EffectorPaths::of_motion(&e.motion, &hand, heading_secs);
+                let along = coordinate(&paths.expect("paths"), set);
+                let gone = along[along.len() - 1] - along[0];
+                assert_eq!(gone > 0.0, rises, "{}: {gone}", primitive.name());
+            }
+        }
     }
 }
 

@@ -103,7 +103,7 @@ fn swings(out: &mut String) -> Result<()> {
 fn primitives(out: &mut String) -> Result<()> {
     let bodies = bodies()?;
     out.push_str(
-        "\n### Every primitive of `choreography/`, limits on\n\nAngles of joints, root mean square over joints and frames \
+        "\n### Every primitive of the paper's movements, limits on\n\nAngles of joints, root mean square over joints and frames \
          (at most), degrees; parameters in the middle and at every exemplar. Adonis by PD (asked: 2), Ares by feedforward \
          and PD (asked: 0.5).\n\n| primitive | Adonis | Ares |\n| --- | --- | --- |\n",
     );

@@ -22,7 +22,7 @@ const PARAMETERS: f64 = 0.1;
 pub fn write_law(out: &mut String) -> Result<()> {
     writeln!(
         out,
-        "\n### The inverse law: {PLACES} places drawn in each written primitive, streamed from its start\n\nShares of places, \
+        "\n### The inverse law: {PLACES} places drawn in each primitive of the paper's movements, streamed from its start\n\nShares of places, \
          inside each vocabulary: label right (asked: .99) / phase within {PHASE} / parameters within {PARAMETERS} where the \
          posture tells them.\n\n| primitive | Adonis | Ares |\n| --- | --- | --- |"
     )?;
